@@ -199,9 +199,6 @@ pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure>
         for row in report.gap_rows() {
             out.json(&row)?;
         }
-        for row in report.cycle_time_rows() {
-            out.json(&row)?;
-        }
     }
     out.flush()?;
     let left_out = report.findings().len().saturating_sub(MAX_LINES);
@@ -256,10 +253,6 @@ pub(crate) fn print(inputs: &Inputs, report: &JobReport<'_>) -> Result<(), Failu
                 count => message!("machine: {stated}, in {count} readings of the program"),
             }
         }
-    }
-    for time in report.cycle_times() {
-        let tool = time.tool.map_or(String::new(), |number| format!(" of T{number}"));
-        message!("time{tool}: {time}");
     }
     // Gaps that are open and not accepted are among the refusals.
     for gap in report.gaps.iter().filter(|gap| match gap.weight {

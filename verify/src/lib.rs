@@ -30,11 +30,11 @@ pub mod program;
 pub mod stock;
 
 pub use check::{
-    Approach, Assumption, BlindWay, BlockError, BlockFault, CYCLE_TIME_ASSUMPTIONS, CycleTime,
-    Finding, FindingGroup, FindingKind, Gap, GapWeight, JointPath, Level, MAX_READINGS, MAX_VALUES,
-    MachineProgram, MachineProgramError, MachineSummary, Move, MovePath, Obstacle, ProgramStop,
-    RapidBox, StepFault, Tilt, ToolSelection, ToolUse, UnknownCause, UnknownMotions, Verifier,
-    VerifyError, VerifyReport,
+    Approach, Assumption, BlindWay, BlockError, BlockFault, Finding, FindingGroup, FindingKind,
+    Gap, GapWeight, JointPath, Level, MAX_READINGS, MAX_VALUES, MachineProgram,
+    MachineProgramError, MachineSummary, Move, MovePath, Obstacle, ProgramStop, RapidBox,
+    StepFault, Tilt, ToolSelection, ToolUse, UnknownCause, UnknownMotions, Verifier, VerifyError,
+    VerifyReport,
 };
 pub use job::{Job, JobError, JobFile, JobReport, JobTool, Program, Verdict};
 pub use program::{ClData, CutterLocation, ProgramError};

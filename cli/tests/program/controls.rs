@@ -3,7 +3,6 @@
 use crate::bench::{Bench, findings, objects, stderr, stdout, touchoff};
 use serde_json::json;
 use std::process::Output;
-use touchoff_verify::CYCLE_TIME_ASSUMPTIONS;
 use touchoff_verify::gcode::{ControlRules, Rule};
 
 /// Returns a folder with a block, a program that states its unit and its offset and turns the spindle, and its job.
@@ -105,9 +104,9 @@ fn a_line_of_a_subprogram_is_in_json_and_in_the_report() {
     }
 }
 
-/// Gaps and times are rows of their own kinds.
+/// Gaps are rows of their own kind.
 #[test]
-fn gaps_and_cycle_times_are_in_the_json() {
+fn gaps_are_in_the_json() {
     let bench = bench("G0 X-6. Y0. Z20.\nM8\nM0\nG1 X4.\nG4 P2.\nG0 Z30.");
     let output = verify(&bench, &[&LINUXCNC[..], &["--json"]].concat());
     let rows = objects(&output);
@@ -116,19 +115,6 @@ fn gaps_and_cycle_times_are_in_the_json() {
         assert!(gaps.iter().any(|gap| gap["code"] == code && gap["open"] == false), "{gaps:?}");
     }
     assert!(findings(&output).is_empty(), "{rows:?}");
-    let times: Vec<_> = rows.iter().filter(|row| row["kind"] == "cycle-time").collect();
-    let [row] = &times[..] else { panic!("{times:?}") };
-    let expected = json!({
-        "file": bench.place("a.nc"), "kind": "cycle-time", "tool_number": null, "feed_s": 6.0, "rapid_s": null,
-        "dwell_s": 2.0, "unknown": 2, "first_unknown_line": 2, "assumptions": CYCLE_TIME_ASSUMPTIONS,
-    });
-    assert_eq!(**row, expected);
-    // A program with several readings names the one of which it is the time.
-    write(&bench, "G43 H1 G0 X-6. Y0. Z20.\nG81 X-6. Y0. Z10. R15.\nX6.\nG80");
-    let rows = objects(&verify(&bench, &["--json"]));
-    let time = rows.iter().find(|row| row["kind"] == "cycle-time").expect("a time");
-    let under = time["under"].as_str().expect("a reading");
-    assert!(under.starts_with("under cycle_return"), "{under}");
 }
 
 #[test]

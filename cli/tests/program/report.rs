@@ -208,14 +208,6 @@ fn a_job_has_tools_fixtures_and_stock() {
     for line in ["Machine: A-C trunnion", "Control: mill.toml", "3 motions not checked"] {
         assert!(page.text.contains(line), "{line}");
     }
-    // 230 mm at F800, 112 mm at F600 and 80 mm at F1000, on a machine that states no rates.
-    let rows = [("T1", "17.3 s"), ("T3", "11.2 s"), ("T2", "4.8 s"), ("all", "33.3 s")];
-    for (tool, feed) in rows {
-        let row = format!(
-            "<th>{tool}</th><td class=\"number\">{feed}</td><td class=\"number\">not known</td>"
-        );
-        assert!(page.text.contains(&row), "{row}");
-    }
     // Job, part, program, control, three tools and the vise.
     assert_eq!(page.between("<td><code>", "</code>").len(), 8);
 }

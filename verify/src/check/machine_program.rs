@@ -20,7 +20,6 @@ use std::fmt;
 use std::sync::Arc;
 use touchoff::{Motion, Unit};
 
-mod cycle_time;
 mod fault;
 mod path;
 mod resolve;
@@ -473,9 +472,8 @@ impl MachineProgram {
             if asks_direction && resolved.is_turned() {
                 execution.resolver.note(Rule::RotaryDirection, &step);
             }
-            // A tool change is no motion of the program, and its time is not counted.
+            // A tool change is no motion of the program.
             if !matches!(step.path, StepPath::ToolChange(_)) {
-                summary.time_of(number, &self.machine).add(&step, &resolved, &self.machine);
                 if is_empty {
                     summary.first_empty.get_or_insert(step.block());
                     summary.empty_blocks.insert(step.block());
@@ -584,9 +582,6 @@ impl MachineProgram {
                 return Err(self.error(error));
             }
             summary.stop = Some(execution.stop_at(error));
-        }
-        for (number, dwells) in execution.interpreter.dwells() {
-            summary.time_of(*number, &self.machine).add_dwells(dwells);
         }
         summary.notes = execution.interpreter.notes();
         summary.blank = execution.interpreter.blank();

@@ -24,14 +24,12 @@
 
 mod approach;
 mod checker;
-mod cycle_time;
 mod finding;
 mod machine_program;
 mod moves;
 mod remedy;
 
 pub use approach::Approach;
-pub use cycle_time::{CYCLE_TIME_ASSUMPTIONS, CycleTime};
 pub(crate) use finding::Rank;
 pub use finding::{Finding, FindingGroup, FindingKind, VerifyError, VerifyReport};
 pub use machine_program::{

@@ -2,7 +2,7 @@
 //! blocks.
 
 use super::GcodeFault;
-use super::control::{Corner, CornerFeed};
+use super::control::Corner;
 use super::error::same_group;
 use super::words::{IGNORE, group};
 use std::fmt;
@@ -49,8 +49,6 @@ pub(super) struct Block {
     whole: u32,
     /// Letters whose number is a parameter or an expression, as bits from A.
     computed: u32,
-    /// Letters whose number has no decimal point, as bits from A.
-    without_point: u32,
     /// Letters with a distance mode of their own, those of them that are increments, and those that turn the shorter way, as bits
     /// from A.
     own_distance: u32,
@@ -60,8 +58,6 @@ pub(super) struct Block {
     pub(super) vector: Option<[f64; 3]>,
     /// The corner at the end of a motion.
     pub(super) corner: Option<Corner>,
-    /// The feed of the corners from here on (FRCM).
-    pub(super) modal_corner_feed: Option<CornerFeed>,
     /// The full turns of an arc beside its way to the end (TURN).
     pub(super) full_turns: u32,
     /// Set if G90 or G91 stands after a coordinate.
@@ -74,10 +70,9 @@ impl Block {
         self.codes = [None; GROUPS];
         self.passed_over.clear();
         self.keyword = None;
-        (self.whole, self.computed, self.without_point) = (0, 0, 0);
+        (self.whole, self.computed) = (0, 0);
         (self.own_distance, self.own_increment, self.shortest) = (0, 0, 0);
         (self.vector, self.corner, self.full_turns) = (None, None, 0);
-        self.modal_corner_feed = None;
         self.distance_after_coordinate = false;
     }
 
@@ -107,9 +102,6 @@ impl Block {
         }
         if number.is_computed {
             self.computed |= bit;
-        }
-        if number.is_whole {
-            self.without_point |= bit;
         }
         Ok(())
     }
@@ -188,11 +180,6 @@ impl Block {
     /// Returns whether the coordinate after a letter, which no word has used, has no decimal point.
     pub(super) fn is_whole(&self, letter: char) -> bool {
         self.whole & self.unused & (1 << (letter as u8 - b'A')) != 0
-    }
-
-    /// Returns whether the number after a letter has no decimal point.
-    pub(super) fn lacks_point(&self, letter: char) -> bool {
-        self.without_point & (1 << (letter as u8 - b'A')) != 0
     }
 
     /// Multiplies the coordinates without a decimal point by a factor of their letter.

@@ -10,12 +10,11 @@ mod heidenhain;
 mod hole;
 mod linuxcnc;
 mod motion;
-mod next_run;
 mod offset;
 mod refuse;
 mod report;
 
-pub(super) use corner::{Corner, CornerFeed, CornerShape, WRITE_OUT};
+pub(super) use corner::{Corner, CornerShape, WRITE_OUT};
 pub(crate) use refuse::band_radii;
 pub(super) use report::Report;
 
@@ -26,9 +25,7 @@ use super::error::{combination, not_read};
 use super::note::{NoteKind, Notes};
 use super::rules::{Choice, ControlRules, Rule};
 use super::state::{ControlState, LengthOffset, Position, RotaryAxes, Rotation, Tcp, WorkOffset};
-use super::{
-    BlockLine, ControlSetup, Dwells, Feed, GcodeFault, Plane, Step, StepPath, SubprogramLine,
-};
+use super::{BlockLine, ControlSetup, GcodeFault, Plane, Step, StepPath, SubprogramLine};
 use compensation::Compensation;
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
@@ -106,9 +103,8 @@ pub(super) struct Control {
     change_position: Option<Position>,
     /// Set once a work offset was selected.
     offset_stated: bool,
-    /// Set by a return to a reference position (`false`) or by G53 along Z (`true`) under a length offset, until the next word or
-    /// motion to which the offset matters.
-    returned: Option<bool>,
+    /// A return that can have cancelled the length offset, until the next word or motion to which the offset matters.
+    returned: Option<Returned>,
     /// The last H.
     last_register: Option<u32>,
     /// Set by a change of the length offset, until Z is stated.
@@ -134,10 +130,6 @@ pub(super) struct Control {
     spindle: SpindleWords,
     /// The modes that the program states, or does not need to.
     pub(super) stated: StatedModes,
-    /// Set while F is no speed along the path, so that no feed is known (Heidenhain Klartext).
-    pub(super) has_own_feed: bool,
-    /// The dwells with each tool.
-    pub(super) dwells: BTreeMap<Option<u32>, Dwells>,
     /// Set to return a step per new tool in the spindle.
     pub(super) has_loads: bool,
     /// Steps that were not yet returned.
@@ -161,8 +153,6 @@ pub(super) struct Modal {
     absolute_centres: Option<bool>,
     feed_mode: FeedMode,
     feed: Option<f64>,
-    /// The feed of corners that state none (FRCM).
-    corner_feed: CornerFeed,
     /// Set where the path goes through the corners (G61).
     pub(super) exact_path: bool,
     /// G99: canned cycles end in the plane R; `None` before G98 or G99.
@@ -192,6 +182,17 @@ enum Motion {
     },
     /// A canned cycle, by its number.
     Cycle(u32),
+}
+
+/// A return under a length offset.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Returned {
+    /// Of Z to a reference position, with other axes or alone.
+    Height,
+    /// Of other axes alone.
+    OtherAxes,
+    /// Of Z by G53.
+    MachineHeight,
 }
 
 /// Meaning of F.
@@ -334,8 +335,6 @@ impl Control {
             length_cancelled: false,
             spindle: SpindleWords::new(),
             stated: StatedModes::default(),
-            has_own_feed: false,
-            dwells: BTreeMap::new(),
             has_loads: false,
             pending: VecDeque::new(),
         }
@@ -434,7 +433,7 @@ impl Control {
             self.length_without_word();
         }
         if self.modal.plane != Plane::Xy
-            && block.is_programmed()
+            && (block.is_programmed() || block.code_of(Group::Machine).is_some())
             && (self.length_implicit || self.state.tcp == Tcp::Transformation)
         {
             let condition = "G18 or G19 is in force and the length of the tool counts without G43, across the plane";
@@ -453,8 +452,7 @@ impl Control {
         }
     }
 
-    /// Takes the word with the time of G4: P, or X in ISO programs, or F, which is no feed rate then. The time is not known where
-    /// controls differ: P is in seconds on LinuxCNC, and without a decimal point in milliseconds on Fanuc and Haas.
+    /// Takes the word with the time of G4: P, or X in ISO programs, or F, which is no feed rate then.
     fn dwell(&mut self, block: &mut Block) -> Result<(), GcodeFault> {
         if block.code_of(Group::Dwell).is_none() {
             return Ok(());
@@ -464,56 +462,14 @@ impl Control {
             let remedy = "write it in a block before";
             return Err(combination("S", condition, remedy));
         }
-        let dialect = self.stated(Rule::Dialect);
         // Native programs of Sinumerik and of Heidenhain have the time in F.
+        let dialect = self.stated(Rule::Dialect);
         let has_time_in_x = !matches!(dialect, Some(Choice::Sinumerik | Choice::Heidenhain));
-        let feed = block.take('F');
-        let seconds = if let Some(time) = block.take('P') {
-            match (dialect, block.lacks_point('P')) {
-                (Some(Choice::Rs274Ngc), _) | (Some(Choice::Iso), false) => Some(time),
-                (Some(Choice::Iso), true) => Some(1e-3 * time),
-                _ => None,
-            }
-        } else if block.code_of(Group::Motion).is_none() && has_time_in_x && block.has('X') {
-            block.take('X').filter(|_| !block.lacks_point('X'))
-        } else {
-            feed.filter(|_| !matches!(dialect, Some(Choice::Iso | Choice::Rs274Ngc)))
-        };
-        self.add_dwell(seconds.filter(|seconds| *seconds >= 0.0), 1);
+        block.take('F');
+        if block.take('P').is_none() && block.code_of(Group::Motion).is_none() && has_time_in_x {
+            block.take('X');
+        }
         Ok(())
-    }
-
-    /// Notes a number of dwells of some seconds with the present tool; `None` if their time is not known.
-    pub(super) fn add_dwell(&mut self, seconds: Option<f64>, count: usize) {
-        let dwells = self.dwells.entry(self.state.tool).or_default();
-        match seconds {
-            Some(seconds) => dwells.seconds += seconds,
-            None => {
-                dwells.unknown += count;
-                dwells.first_unknown.get_or_insert(self.line);
-            }
-        }
-    }
-
-    /// Returns the feed that is programmed for a motion, as far as it is known.
-    fn programmed_feed(&self) -> Option<Feed> {
-        let feed = self.modal.feed.filter(|_| !self.has_own_feed)?;
-        if self.modal.feed_mode != FeedMode::InverseTime {
-            return self.speed(feed);
-        }
-        // It is the time of a block, of which these make several motions.
-        let is_one_motion = self.modal.cycle().is_none() && self.compensation.is_none();
-        is_one_motion.then_some(Feed::Time { minutes: 1.0 / feed })
-    }
-
-    /// Returns the speed of a feed per minute or per turn of the spindle; `None` if it is not known, and of a feed by time.
-    fn speed(&self, feed: f64) -> Option<Feed> {
-        let per_minute = match self.modal.feed_mode {
-            FeedMode::PerMinute => feed,
-            FeedMode::PerRevolution => feed * self.spindle.speed.filter(|turns| *turns > 0.0)?,
-            FeedMode::InverseTime => return None,
-        };
-        Some(Feed::Speed { length: self.modal.millimetres(per_minute), angle: per_minute })
     }
 
     /// Gives the numbers of a block the unit that the control gives them.
@@ -576,14 +532,7 @@ impl Control {
             {
                 self.modal.feed = None;
             }
-            // FRCM has to be stated again.
-            if mode != self.modal.feed_mode && self.modal.corner_feed != CornerFeed::OfMotion {
-                self.modal.corner_feed = CornerFeed::Unknown;
-            }
             self.modal.feed_mode = mode;
-        }
-        if let Some(feed) = block.modal_corner_feed.take() {
-            self.modal.corner_feed = feed;
         }
         // F of G93 is the time of one block.
         if self.modal.feed_mode == FeedMode::InverseTime {
@@ -758,6 +707,62 @@ impl Control {
         }
     }
 
+    /// Ends the program.
+    pub(super) fn end(&mut self) -> Result<(), GcodeFault> {
+        self.end_compensation()?;
+        if let Some(block) = self.uncalled {
+            self.notes.add(block, NoteKind::UncalledCycle);
+        }
+        let words = self.words_in_force().join(", ");
+        if !words.is_empty() {
+            self.notes.add(self.block(), NoteKind::LeftModes { words });
+        }
+        Ok(())
+    }
+
+    /// Returns words in force that change what positions mean, and that another run of the program may find in force.
+    fn words_in_force(&self) -> Vec<String> {
+        let dialect = self.stated(Rule::Dialect);
+        let is_heidenhain = dialect == Some(Choice::Heidenhain);
+        // M2 and M30 of LinuxCNC end G91 and the shift by G92 (`convert_stop`).
+        let is_linuxcnc = dialect == Some(Choice::Rs274Ngc);
+        let frame = self.frames.word();
+        let has_shift = self.local != [0.0; 6]
+            || self.preset != [Some(0.0); 6] && !is_linuxcnc
+            || frame.is_some();
+        let shift = match frame {
+            Some(word) => word,
+            None if is_heidenhain => "a datum shift",
+            None if self.local == [0.0; 6] => "G92",
+            None => "G52",
+        };
+        let rotation = match self.state.rotation {
+            Rotation::Tilted { .. } if is_heidenhain => "PLANE",
+            Rotation::Tilted { .. } => "G68.2",
+            _ if is_heidenhain => "a rotation",
+            _ => "G68",
+        };
+        let is_rotated = self.state.rotation != Rotation::Off && frame.is_none();
+        let tcp = match self.state.tcp {
+            Tcp::Transformation => "TRAORI",
+            Tcp::Vector => "G43.5",
+            _ if is_heidenhain => "M128",
+            _ if self.transformed => "M428",
+            _ => "G43.4",
+        };
+        let words = [
+            (self.modal.incremental && !is_linuxcnc, "G91"),
+            (has_shift, shift),
+            (is_rotated, rotation),
+            (self.polar.is_some(), "G16"),
+            (self.mirror != [None; 3], "G51.1"),
+            (self.is_tcp(), tcp),
+        ];
+        let words = words.into_iter().filter(|(is_left, _)| *is_left);
+        let cycle = self.modal.cycle().map(|number| format!("G{number} without G80"));
+        words.map(|(_, word)| word.to_owned()).chain(cycle).collect()
+    }
+
     /// Returns the remedy that ends tool centre point control.
     fn tcp_remedy(&self) -> &'static str {
         match self.transformed {
@@ -778,12 +783,10 @@ impl Control {
         };
         let state = Arc::clone(&self.state);
         let (line, within, tool_vector) = (self.line, self.within, self.vector);
-        let feed = if rapid { None } else { self.programmed_feed() };
         self.pending.push_back(Step {
             line,
             within,
             rapid,
-            feed,
             start,
             end,
             commanded,
@@ -817,7 +820,6 @@ impl Modal {
             absolute_centres: None,
             feed_mode: FeedMode::PerMinute,
             feed: None,
-            corner_feed: CornerFeed::OfMotion,
             exact_path: false,
             retract_to_r: None,
         }

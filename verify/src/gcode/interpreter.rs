@@ -2,11 +2,11 @@
 
 use super::control::Control;
 use super::files::in_file;
+use super::note::ProgramNote;
 use super::rules::{Choice, Rule};
 use super::survey::Survey;
 use super::{
-    BlockLine, ControlSetup, Dwells, GcodeError, GcodeFault, Step, SubprogramFile, iso, klartext,
-    sinumerik,
+    BlockLine, ControlSetup, GcodeError, GcodeFault, Step, SubprogramFile, iso, klartext, sinumerik,
 };
 use std::collections::BTreeMap;
 use touchoff::{Unit, cancellation};
@@ -28,10 +28,8 @@ pub struct Interpreter<'a> {
     lines: usize,
     /// Set if an error has stopped the program.
     is_stopped: bool,
-    /// The end of the program, once it was executed.
-    pub(super) end: Option<End>,
     /// Itself before the first block.
-    pub(super) first: Option<Box<Interpreter<'a>>>,
+    first: Option<Box<Interpreter<'a>>>,
 }
 
 /// The text of a program in the language of its control, and the place of its execution. A front end translates each line into
@@ -55,18 +53,7 @@ pub(super) enum Language {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Progress {
     GoesOn,
-    Ended(End),
-}
-
-/// The word that ends a program.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum End {
-    /// M2 or M30, at which some controls set modes.
-    Stop,
-    /// `%`.
-    Percent,
-    /// M99 of the main program, after which it begins again.
-    Repeat,
+    Ended,
 }
 
 impl<'a> Interpreter<'a> {
@@ -104,7 +91,6 @@ impl<'a> Interpreter<'a> {
             present: None,
             lines: 0,
             is_stopped: false,
-            end: None,
             first: None,
         };
         Ok(Interpreter { first: Some(Box::new(first.clone())), ..first })
@@ -125,9 +111,11 @@ impl<'a> Interpreter<'a> {
         &self.control.asked
     }
 
-    /// Returns the dwells so far, by the tool in the spindle.
-    pub fn dwells(&self) -> &BTreeMap<Option<u32>, Dwells> {
-        &self.control.dwells
+    /// Returns the notes about the blocks that were executed so far, by line.
+    pub fn notes(&self) -> Vec<ProgramNote> {
+        let mut notes = self.control.notes.clone().list();
+        notes.sort_by_key(|note| note.line);
+        notes
     }
 
     /// Returns an execution of what follows the present block, which goes on behind errors: it finds what else stands in the way of the
@@ -179,21 +167,6 @@ impl<'a> Interpreter<'a> {
         (0..3).all(|axis| low[axis] < high[axis]).then_some([low, high])
     }
 
-    /// Takes over the shift, the rotation or both that another run has left, where the text keeps them beside the control: in Klartext.
-    pub(super) fn keep_frame(&mut self, left: &Interpreter, [shift, rotation]: [bool; 2]) {
-        if let (Front::Klartext(program), Front::Klartext(left)) = (&mut self.front, &left.front) {
-            program.keep_frame(left, [shift, rotation]);
-        }
-    }
-
-    /// Returns the words that can have left the shift, if a program in Klartext ends with DL.
-    pub(super) fn klartext_shift(&self) -> Option<&'static str> {
-        match &self.front {
-            Front::Klartext(program) => program.shift_words(),
-            Front::Iso(_) | Front::Sinumerik(_) => None,
-        }
-    }
-
     /// Executes the next line, and returns whether the program goes on.
     pub(super) fn execute_line(&mut self) -> Result<bool, GcodeError> {
         cancellation::check();
@@ -208,7 +181,7 @@ impl<'a> Interpreter<'a> {
         self.present = next.map_err(|error| self.in_program(file, error))?;
         match self.present {
             Some(_) => self.execute_again(),
-            None => self.end_by(End::Percent),
+            None => self.end(),
         }
     }
 
@@ -224,7 +197,7 @@ impl<'a> Interpreter<'a> {
         };
         match progress.map_err(|fault| self.in_program(file, GcodeError { line, fault }))? {
             Progress::GoesOn => Ok(true),
-            Progress::Ended(end) => self.end_by(end),
+            Progress::Ended => self.end(),
         }
     }
 
@@ -235,10 +208,10 @@ impl<'a> Interpreter<'a> {
     }
 
     /// Ends the program.
-    fn end_by(&mut self, end: End) -> Result<bool, GcodeError> {
+    fn end(&mut self) -> Result<bool, GcodeError> {
         let line = self.control.line;
-        self.control.end_compensation().map_err(|fault| GcodeError { line, fault })?;
-        (self.finished, self.end) = (true, Some(end));
+        self.control.end().map_err(|fault| GcodeError { line, fault })?;
+        self.finished = true;
         Ok(false)
     }
 

@@ -237,8 +237,6 @@ pub struct Step {
     pub within: Option<SubprogramLine>,
     /// Set in rapid traverse.
     pub rapid: bool,
-    /// The programmed feed; `None` in rapid traverse, and where it is not known.
-    pub feed: Option<Feed>,
     /// Position at the start: the end of the motion before, in the coordinates that hold now.
     pub start: Position,
     /// Position at the end. A coordinate that is `None` and not [commanded](Step::commanded) stays as it is.
@@ -288,35 +286,6 @@ pub enum Alignment {
         /// Set for the higher value.
         is_higher: bool,
     },
-}
-
-/// The programmed feed of a motion.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Feed {
-    /// A speed (G94), or that of a feed per turn at the speed of the spindle (G95).
-    Speed {
-        /// Along the path of X, Y and Z, in millimetres per minute.
-        length: f64,
-        /// Feed of a motion of rotary axes alone, in degrees per minute.
-        angle: f64,
-    },
-    /// The time of the motion (G93).
-    Time {
-        /// In minutes.
-        minutes: f64,
-    },
-}
-
-/// The dwells of a program with one tool.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[non_exhaustive]
-pub struct Dwells {
-    /// Time of those by G4, in seconds.
-    pub seconds: f64,
-    /// Number of those whose time is not known: G4 where controls differ in its unit, and dwells of canned cycles.
-    pub unknown: usize,
-    /// The line of the first of them.
-    pub first_unknown: Option<usize>,
 }
 
 /// The path of a motion. All axes start and end together.

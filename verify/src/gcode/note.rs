@@ -104,13 +104,13 @@ faults! {
              the arc with its centre"
         )]
         RoundedRadius,
-        /// A motion that differs in the next run of the program.
+        /// What the program leaves in force.
         ///
-        /// Some controls keep modes from the end of one run to the start of the next.
+        /// Some controls keep it from the end of one run to the start of the next.
         #[code = V0516]
         #[error(
-            "the program ends with {words}, which a control can keep, and its next run is another from here on: write before what this \
-             motion needs, end the program as it starts, or state `program_end` of the control"
+            "the program ends with {words} in force, with which its next run begins where the control keeps it: end it before, or state \
+             its modes at the start"
         )]
         LeftModes {
             /// The words that left them, as a list.

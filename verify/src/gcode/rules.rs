@@ -59,8 +59,6 @@ pub enum Rule {
     ToolOrientation,
     /// The work offset after `TRAORI` and `TRAFOOF`.
     TransformationOffset,
-    /// Modes and offsets at M2 and M30.
-    ProgramEnd,
     /// The path around an outside corner under cutter compensation.
     OutsideCorner,
     /// The first and the last motion of cutter compensation.
@@ -127,9 +125,6 @@ pub enum Choice {
     GreatCircle,
     DeselectsOffset,
     KeepsOffset,
-    KeepsModes,
-    SetsModes,
-    ResetsModes,
     ArcCorner,
     StraightCorner,
     NextMotion,
@@ -157,7 +152,7 @@ struct Entry {
 }
 
 /// All rules. Without a statement the interpreter makes the first choice of each.
-const RULES: [Entry; 29] = [
+const RULES: [Entry; 28] = [
     Entry {
         rule: Rule::ToolChange,
         key: "tool_change",
@@ -391,25 +386,6 @@ const RULES: [Entry; 29] = [
         ],
     },
     Entry {
-        rule: Rule::ProgramEnd,
-        key: "program_end",
-        about: "modes and offsets at M2 and M30",
-        choices: &[
-            (Choice::KeepsModes, "keeps modes", "can all be kept for the next run"),
-            (Choice::SetsModes, "sets modes", "are G17, G90 and G54, and others are kept"),
-            (
-                Choice::CancelsLength,
-                "cancels length",
-                "are without a length offset, and others can be kept",
-            ),
-            (
-                Choice::ResetsModes,
-                "resets modes",
-                "are as at the start, but for offsets that G10 has set",
-            ),
-        ],
-    },
-    Entry {
         rule: Rule::OutsideCorner,
         key: "outside_corner",
         about: "the tool at an outside corner under cutter compensation",
@@ -503,7 +479,7 @@ const CONTROLS: [&str; 5] = ["fanuc", "haas", "linuxcnc", "siemens", "heidenhain
 /// Their choices, a column per control, in the order of [`RULES`] without the operator's switch. Each is the control as
 /// delivered: a builder can set most of them otherwise.
 #[rustfmt::skip]
-const CONTROL_CHOICES: [[Choice; 5]; 28] = {
+const CONTROL_CHOICES: [[Choice; 5]; 27] = {
     use Choice::*;
     [
         [Moves,           Retracts,      Stays,         Moves,         Moves],
@@ -528,7 +504,6 @@ const CONTROL_CHOICES: [[Choice; 5]; 28] = {
         [TableAsItStands, TableAtZero,   TableAtZero,   TableAtZero,   TableAtZero],
         [ByAxes,          ByAxes,        ByAxes,        ByAxes,        ByAxes],
         [KeepsOffset,     KeepsOffset,   KeepsOffset,   KeepsOffset,   KeepsOffset],
-        [KeepsModes,      KeepsModes,    SetsModes,     KeepsModes,    KeepsModes],
         [StraightCorner,  StraightCorner, ArcCorner,    ArcCorner,     ArcCorner],
         [NextMotion,      NextMotion,    EntryMotion,   NextMotion,    NextMotion],
         [Iso841,          Iso841,        Iso841,        Iso841,        Iso841],
@@ -585,15 +560,7 @@ impl Rule {
 
     /// Returns whether each choice is a reading of its own. The other rules are judged by the choice that includes all.
     pub(crate) fn is_branched(self) -> bool {
-        !matches!(
-            self,
-            Rule::ToolChange | Rule::Unit | Rule::StartOffset | Rule::Dialect | Rule::ProgramEnd
-        )
-    }
-
-    /// Returns whether each choice is a reading, and decides what the interpreter does.
-    pub(super) fn is_of_interpreter(self) -> bool {
-        self.is_branched() && !self.is_of_machine()
+        !matches!(self, Rule::ToolChange | Rule::Unit | Rule::StartOffset | Rule::Dialect)
     }
 
     /// Returns whether the choice depends on the machine.

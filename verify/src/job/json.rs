@@ -1,4 +1,4 @@
-//! Findings, gaps and cycle times as JSON objects, and findings as a log in SARIF 2.1.0, the format in which services of continuous
+//! Findings and gaps as JSON objects, and findings as a log in SARIF 2.1.0, the format in which services of continuous
 //! integration take the results of analyses.
 //!
 //! Own types: the crate `serde-sarif` generates those of the whole standard while it is built, and findings need these.
@@ -8,7 +8,7 @@ use super::report::{FindingDetail, JobFinding, JobReport, PairReport, Remedy, Se
 use super::stock::StockRow;
 use super::{FindingRule, JobTool};
 use crate::gcode::SubprogramLine;
-use crate::{CYCLE_TIME_ASSUMPTIONS, FindingGroup, FindingKind};
+use crate::{FindingGroup, FindingKind};
 use serde::Serialize;
 use touchoff::Escaped;
 use touchoff::certify::Witness;
@@ -30,23 +30,6 @@ impl JobReport<'_> {
             code: gap.code(),
             open: gap.is_open(),
             reason: &gap.reason,
-        })
-    }
-
-    /// Returns the [times of the tools](JobReport::cycle_times) as objects for JSON.
-    pub fn cycle_time_rows(&self) -> impl Iterator<Item = impl Serialize + '_> {
-        let under = self.job.program.under(&[0]);
-        self.cycle_times().into_iter().map(move |time| CycleTimeRow {
-            file: self.job.program.name(),
-            kind: "cycle-time",
-            tool_number: time.tool,
-            feed_s: time.feed,
-            rapid_s: time.rapid,
-            dwell_s: time.dwell,
-            unknown: time.unknown,
-            first_unknown_line: time.first_unknown,
-            under: under.clone(),
-            assumptions: CYCLE_TIME_ASSUMPTIONS,
         })
     }
 
@@ -304,25 +287,6 @@ struct GapRow<'a> {
     /// Set if it allows no verdict.
     open: bool,
     reason: &'a str,
-}
-
-/// The time of a tool as a JSON object, in seconds.
-#[derive(Serialize)]
-struct CycleTimeRow<'a> {
-    file: &'a str,
-    kind: &'static str,
-    tool_number: Option<u32>,
-    feed_s: f64,
-    /// Null if no rates are stated.
-    rapid_s: Option<f64>,
-    dwell_s: f64,
-    /// Number of motions and dwells whose time is not known, and not counted.
-    unknown: usize,
-    first_unknown_line: Option<usize>,
-    /// The reading of the program, if it has several.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    under: Option<String>,
-    assumptions: &'static str,
 }
 
 #[derive(Serialize)]

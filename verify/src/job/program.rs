@@ -6,7 +6,7 @@ use crate::check::MoveRequest;
 use crate::gcode::{ControlRules, ControlSetup, SubprogramFile, SubprogramLine};
 use crate::machine::{Machine, Mover, Reference, Relation, Side};
 use crate::program::{ProgramFile, read_text};
-use crate::{ClData, CycleTime, Gap, MachineProgram, Move, ProgramError, ToolSelection, ToolUse};
+use crate::{ClData, Gap, MachineProgram, Move, ProgramError, ToolSelection, ToolUse};
 use std::collections::HashMap;
 use std::iter;
 use std::path::{Path, PathBuf};
@@ -217,17 +217,6 @@ impl Program {
             tools[place].motions += motions;
         }
         tools
-    }
-
-    /// Returns the time of each tool in the first reading, in the order of the program; none of positions without feeds and delays.
-    /// `unit` is that of positions whose program states none.
-    pub fn cycle_times(&self, unit: Unit) -> Vec<CycleTime> {
-        match self {
-            Program::Locations(programs) => CycleTime::of_locations(programs, unit),
-            Program::Machine(readings) => {
-                readings.first().map_or(Vec::new(), |reading| reading.summary().times.clone())
-            }
-        }
     }
 
     /// Returns the number of motions, those of all readings together.

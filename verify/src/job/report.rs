@@ -5,7 +5,7 @@ use super::stock::{CutStock, StockFinding};
 use super::{Body, FindingRule, Job, JobTool, RevolvedBody};
 use crate::codes::faults;
 use crate::gcode::SubprogramLine;
-use crate::{CycleTime, FindingGroup, Gap, GapWeight, Tilt, VerifyReport};
+use crate::{FindingGroup, Gap, GapWeight, Tilt, VerifyReport};
 use std::fmt;
 use touchoff::Tool;
 use touchoff::tool::ToolInfo;
@@ -139,11 +139,6 @@ impl JobReport<'_> {
 
     pub(super) fn info(&self, pair: &PairReport) -> &ToolInfo {
         self.shape(pair).info()
-    }
-
-    /// Returns the time of each tool, as [`Program::cycle_times`](super::Program::cycle_times) does.
-    pub fn cycle_times(&self) -> Vec<CycleTime> {
-        self.job.program.cycle_times(self.job.unit())
     }
 
     /// Returns the stock after the first reading, if the job has one.

@@ -14,23 +14,17 @@
 //! and the cutters stated before or after it, up to the next position, are those of the new one. In NX's files,
 //! `TOOL PATH` after `END-OF-PATH` begins another operation.
 //!
-//! `FEDRAT`, `SPINDL` and `DELAY` give the feeds and delays from which times follow (`rates`). They hold until the next one, for
-//! every tool.
-//!
 //! Words that can neither move the tool nor change the meaning of positions are listed in
 //! [`ClData::ignored`](super::ClData::ignored), with any arguments or with those given; so is a rate that is not understood. Every
 //! other word is refused: an unknown one could be a motion.
 
 mod cycle;
-mod rates;
 
 use super::{
-    CutterLocation, Delay, Faults, Located, ProgramFault, Tape, Tapes, axis_pose, lines, number,
-    shown,
+    CutterLocation, Faults, Located, ProgramFault, Tape, Tapes, axis_pose, lines, number, shown,
 };
 use cycle::{Arc, Cycle, Stop};
 use nalgebra::Vector3;
-use rates::Rates;
 use std::collections::{BTreeMap, HashSet};
 use std::mem;
 use touchoff::{Pose, Unit, cancellation};
@@ -168,7 +162,6 @@ struct Reader {
     /// Set in a file of NX, which has `TOOL PATH`.
     is_nx: bool,
     rapid: bool,
-    rates: Rates,
     /// The arc to the next position.
     arc: Option<Arc>,
     /// Set in a file of Creo, which states several positions on an arc.
@@ -289,7 +282,6 @@ impl Reader {
             }
             "FROM" if self.tape.locations.is_empty() => {
                 self.position(line, "FROM", rest, true, is_last)?;
-                self.tape.starts_at_first = true;
             }
             "FROM" => return Err(ProgramFault::LateFrom),
             "RAPID" if rest.is_empty() => self.rapid = true,
@@ -358,8 +350,7 @@ impl Reader {
 
     fn add(&mut self, line: usize, stops: Vec<Stop>) {
         for Stop { pose, rapid } in stops {
-            let feed = self.rates.feed().filter(|_| !rapid && self.cycle.is_none());
-            self.tape.locations.push(CutterLocation { line, pose, rapid, feed });
+            self.tape.locations.push(CutterLocation { line, pose, rapid });
         }
     }
 
@@ -494,18 +485,7 @@ impl Reader {
     ) -> Result<(), ProgramFault> {
         match skip_statement(word, rest) {
             Ok(word) => {
-                let is_read = match word.as_str() {
-                    "DELAY" | "DWELL" => {
-                        // The unit of a `DWELL` is the post-processor's.
-                        let seconds = self.rates.delay(rest).filter(|_| word == "DELAY");
-                        self.tape.delays.push(Delay { line, seconds });
-                        seconds.is_some()
-                    }
-                    other => self.rates.read(other, rest),
-                };
-                if !is_read {
-                    self.tape.ignored.push((line, word));
-                }
+                self.tape.ignored.push((line, word));
                 Ok(())
             }
             Err(ProgramFault::UnknownWord { .. })

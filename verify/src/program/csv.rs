@@ -58,7 +58,7 @@ pub(super) fn read(text: &str) -> Result<Vec<CutterLocation>, Located> {
             columns.is_none() && is_names(row, &cells).map_err(|fault| (line, fault))?;
         if !is_header {
             let pose = pose(row, &cells, columns).map_err(|fault| (line, fault))?;
-            locations.push(CutterLocation { line, pose, rapid: false, feed: None });
+            locations.push(CutterLocation { line, pose, rapid: false });
         }
         columns = Some(cells.len());
     }

@@ -39,11 +39,7 @@ pub struct ClData {
     pub ignored: Vec<(usize, String)>,
     /// The tool's number, if APT's `LOADTL` states it.
     pub tool: Option<u32>,
-    /// Delays of APT.
-    pub delays: Vec<Delay>,
     file: String,
-    /// Set if the tool stands at the first location (`FROM`), and no motion leads there.
-    starts_at_first: bool,
     /// Line of `UNITS` in a program that was read.
     unit_line: Option<usize>,
     /// Cutters that APT states, as arguments of `CUTTER` in the program's unit, each with its line.
@@ -111,17 +107,6 @@ pub struct CutterLocation {
     pub pose: Pose,
     /// Set if the tool arrives in rapid traverse.
     pub rapid: bool,
-    /// The speed of the tip on the way there, in millimetres per minute, as far as APT states it (`FEDRAT`); `None` in rapid traverse.
-    pub feed: Option<f64>,
-}
-
-/// A delay that a program states.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Delay {
-    /// Its line, 1-based.
-    pub line: usize,
-    /// Its time in seconds; `None` if that is not known.
-    pub seconds: Option<f64>,
 }
 
 impl ClData {
@@ -136,9 +121,8 @@ impl ClData {
         poses: impl IntoIterator<Item = (Pose, bool)>,
     ) -> Result<ClData, ProgramError> {
         let numbered = (1..).zip(poses);
-        let locations: Vec<CutterLocation> = numbered
-            .map(|(line, (pose, rapid))| CutterLocation { line, pose, rapid, feed: None })
-            .collect();
+        let locations: Vec<CutterLocation> =
+            numbered.map(|(line, (pose, rapid))| CutterLocation { line, pose, rapid }).collect();
         let file = name.to_owned();
         if locations.is_empty() {
             return Err(ProgramError::NoPosition { file });
@@ -148,9 +132,7 @@ impl ClData {
             locations,
             ignored: Vec::new(),
             tool: None,
-            delays: Vec::new(),
             file,
-            starts_at_first: false,
             unit_line: None,
             cutters: Vec::new(),
         })
@@ -213,8 +195,6 @@ impl ClData {
             locations: tape.locations,
             ignored: tape.ignored,
             tool: tape.tool,
-            delays: tape.delays,
-            starts_at_first: tape.starts_at_first,
             cutters: tape.cutters,
             file: file.clone(),
         });
@@ -224,11 +204,6 @@ impl ClData {
     /// Returns the program's name in messages.
     pub fn name(&self) -> &str {
         &self.file
-    }
-
-    /// Returns whether the tool stands at the first location (`FROM`), so that no motion leads there.
-    pub(crate) fn starts_at_first(&self) -> bool {
-        self.starts_at_first
     }
 
     /// Checks that a unit that the file states is the part's. A file that states none is taken to be in the
@@ -300,9 +275,6 @@ struct Tape {
     unit: Option<(Unit, usize)>,
     ignored: Vec<(usize, String)>,
     tool: Option<u32>,
-    delays: Vec<Delay>,
-    /// Set if the first location is that of `FROM`.
-    starts_at_first: bool,
     cutters: Vec<(usize, Vec<f64>)>,
 }
 

@@ -339,7 +339,6 @@ fn cycles_in_three_planes_and_with_both_retracts() {
 /// test is about.
 const NOT_READ: &[(&str, &str)] = &[
     // The program stops with an error there, too, or its result is that of several runs.
-    ("abort-hot-comment", "(abort, is a comment at which LinuxCNC stops"),
     ("m98m99/03-error-M98-no-P-word", "M98 needs P"),
     ("m98m99/04-M98-but-no-sub", "there is no O1 in this file"),
     ("m98m99/06-error-mixed-sub-styles", "call it by M98 P"),

@@ -1,6 +1,6 @@
 //! Macros of Fanuc and of LinuxCNC, against programs whose motions are computed here.
 
-use crate::common::assert_fault;
+use crate::common::{assert_fault, is_fault};
 use std::collections::BTreeMap;
 use touchoff_verify::MachineProgram;
 use touchoff_verify::gcode::{Choice, ControlRules, ControlSetup, NoteKind, Rule, Step, read};
@@ -340,18 +340,18 @@ fn decisions_of_linuxcnc_take_one_branch() {
         );
         assert_ends(&program, Choice::Rs274Ngc, &[[expected, 0.0], [expected, 1.0]]);
     }
-    // break, continue, do, and nesting: the sum of the odd numbers below 8.
+    // break, continue and nesting: the sum of the odd numbers below 8.
     let program = "g21 g90 g0\n#31=0\n#32=0\no1 while [1]\n#31=[#31+1]\no2 if [#31 ge 8]\no1 break\no2 endif\n\
-        o3 if [#31 mod 2 eq 0]\no1 continue\no3 endif\n#32=[#32+#31]\nx#31 y#32\no1 endwhile\no4 do\n#31=[#31-3]\nx#31\n\
-        o4 while [#31 gt 0]\nm30\n";
+        o3 if [#31 mod 2 eq 0]\no1 continue\no3 endif\n#32=[#32+#31]\nx#31 y#32\no1 endwhile\nm30\n";
     let mut expected = vec![];
     let mut sum = 0.0;
     for odd in [1.0, 3.0, 5.0, 7.0] {
         sum += odd;
         expected.push([odd, sum]);
     }
-    expected.extend([[5.0, sum], [2.0, sum], [-1.0, sum]]);
     assert_ends(program, Choice::Rs274Ngc, &expected);
+    let counted = "g21 g90 g0\n#31=8\no4 do\n#31=[#31-3]\nx#31\no4 while [#31 gt 0]\nm30\n";
+    assert_ends(counted, Choice::Rs274Ngc, &[[5.0, 0.0], [2.0, 0.0], [-1.0, 0.0]]);
     // Recursion, and a value that is returned.
     let factorial = "g21 g90 g0\no<f> sub\no1 if [#1 le 1]\no<f> return [1]\no1 endif\no<f> call [#1-1]\n\
         o<f> endsub [#1*#<_value>]\no<f> call [5]\nx#<_value>\nm30\n";
@@ -499,4 +499,67 @@ fn printing_is_passed_over() {
     }
     let error = read(program, &setup(Choice::Rs274Ngc)).expect_err("a word of Fanuc");
     assert_fault(program, &error, 2, "P0107 `POPEN`");
+}
+
+/// What LinuxCNC's interpreter does with O-words where its manual says otherwise, or nothing: what is followed, and what is refused.
+#[test]
+fn o_words_of_linuxcnc_do_what_its_interpreter_does() {
+    let called = |main: &str, subs: &str| format!("g21 g90 g0\n{main}\nm2\n{subs}\n");
+    // Arguments that are left out are 0, and each repeat of a call has its own names.
+    let left_out = "g21 g90 g0\no1 sub\nx#1 y#2\no1 endsub\n#2=20\no1 call [80]\nm2\n";
+    assert_ends(left_out, Choice::Rs274Ngc, &[[80.0, 0.0]]);
+    let repeated = called(
+        "m98 p7 l2",
+        "o7\no1 if [exists[#<a>]]\nx9\no1 else\n#<a>=1\ny[#5421+1]\no1 endif\nm99",
+    );
+    assert_ends(&repeated, Choice::Rs274Ngc, &[[0.0, 1.0], [0.0, 2.0]]);
+    // A call leaves the value with which one before has returned.
+    let returned =
+        "g21 g90 g0\no1 sub\no1 endsub [20]\no2 sub\nx#<_value>\no2 endsub\no1 call\no2 call\nm2\n";
+    assert_ends(returned, Choice::Rs274Ngc, &[[20.0, 0.0]]);
+    for (program, code, word) in [
+        ("o1 while [1]\no1 break\no1 endwhile\no2 do\nx1\no2 while [0]", "P0120", "break"),
+        ("o1 do\no1 continue\no1 while [0]", "P0120", "continue"),
+        ("o1 do\nx1\no1 while [0]\no1 do\nx2\no1 while [0]", "P0128", "O1"),
+        ("o1 do\nx1\no1 while [0]\no1 while [0]\no1 endwhile", "P0128", "O1"),
+        ("o1 while [1]\no2 repeat [3]\no1 break\no2 endrepeat\no1 endwhile", "P0120", "break"),
+        ("o1 if [0]\nx1\n/o1 else\nx2\no1 endif", "P0128", "O1"),
+        ("o1 if [exists[#<_done>]]\no1 endif", "P0210", "#<_done>"),
+        ("o1 if [exists[#<done>]]\no1 endif", "P0210", "#<done>"),
+        ("g20\nx#5221", "P0211", "#5221"),
+        ("x#5021", "P0211", "#5021"),
+        ("x#5083", "P0211", "#5083"),
+        ("g92 x1\ng92.2\nx#5211", "P0211", "#5211"),
+        ("o1 sub\no1 endsub\nx#<_value>", "P0210", "#<_value>"),
+    ] {
+        let text = format!("g21 g90 g0\n{program}\nm2\n");
+        let error = read(&text, &setup(Choice::Rs274Ngc)).expect_err(program);
+        assert!(is_fault(&error, &format!("{code} {word}")), "{program}: {error}");
+    }
+    let left = called("m98 p7", "o7\no1 repeat [3]\nm99\no1 endrepeat");
+    let error = read(&left, &setup(Choice::Rs274Ngc)).expect_err("a repeat that is left");
+    assert!(is_fault(&error, "P0120 M99"), "{error}");
+    // Open decisions of any number take no longer than their text.
+    let open: String = (0..100_000).map(|k| format!("o{k} if [1]\n")).collect();
+    let error = read(&format!("g21\n{open}m2\n"), &setup(Choice::Rs274Ngc)).expect_err("open");
+    assert!(is_fault(&error, "P0128 more than 1,000"), "{error}");
+}
+
+/// Positions that controls report otherwise than the program states them are not known.
+#[test]
+fn positions_that_a_control_reports_otherwise_are_not_known() {
+    for (program, dialect, word) in [
+        ("g21 g90 g17 f9 g41.1 d2 g1 x9 y9\nx20\nx#<_x>", Choice::Rs274Ngc, "#<_x>"),
+        ("G21 G90 G17 F9. G68 X0. Y0. R30.\nG1 X9. Y9.\nX#5001", Choice::Iso, "#5001"),
+        ("G21 G90 G17 G51.1 X0.\nG0 X9. Y9.\nX#5001", Choice::Iso, "#5001"),
+    ] {
+        let error = read(program, &setup(dialect)).expect_err(program);
+        assert!(is_fault(&error, &format!("P0211 {word}")), "{program}: {error}");
+    }
+    // Under a length offset that a return may have ended.
+    let lengths = BTreeMap::from([(1, 50.0)]);
+    let setup = ControlSetup { lengths, home: Some([0.0; 6]), ..setup(Choice::Iso) };
+    let text = "G21 G90 G0 G43 H1 Z9.\nG91 G28 Z0.\nG90 X#5003";
+    let error = read(text, &setup).expect_err("a height");
+    assert!(is_fault(&error, "P0211 #5003"), "{error}");
 }

@@ -10,7 +10,6 @@ mod klartext;
 mod klartext_cycles;
 mod macros;
 mod mutants;
-mod next_run;
 mod programs;
 mod refusals;
 mod sinumerik;

@@ -226,3 +226,12 @@ fn klartext_of_cam_systems_is_read() {
     let decides = text.replace("\nLBL 0\nLBL \"On\"", "\nL Z2 R0 FMAX\nLBL \"On\"");
     job(&decides, TRUNNION).gives(HEIDENHAIN, NONE, &["P0210 24 Q1900"]);
 }
+
+/// Arcs that releases of LinuxCNC take for full circles, and full circles that they take for arcs.
+#[test]
+fn ends_that_are_apart_by_rounding_are_refused_on_linuxcnc() {
+    for arc in ["G2 X-5. Y0.00003 I50. J0.", "G3 X-5. Y0.000005 I2. J0."] {
+        let scene = Scene::new(&format!("G17\nG0 X-5. Y0. Z20.\nG1 Z10.\n{arc}\nG0 Z20."));
+        scene.gives(LINUXCNC, NONE, &["P0120 5 full circle"]);
+    }
+}

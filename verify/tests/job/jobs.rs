@@ -187,42 +187,30 @@ fn a_program_without_a_tool_number_moves_its_gauge_point_without_an_offset() {
     other.gives(LINUXCNC, NONE, &["V0408 5 H7"]);
 }
 
-/// The state at the end of a program is that in which its next run begins, on some controls.
+/// What is in force at the end of a program is what its next run begins with, where the control keeps it.
 #[test]
-fn a_program_that_ends_otherwise_than_it_begins_is_named() {
-    let begin = "G21 G54 S9000 M3 F100.\nG0 X-6. Y0. Z20.\nG1 X-4. Z1.\nG0 Z20.\n";
-    let word = "V0516";
-    Scene::of(&format!("{begin}G91 G28 Z0.\nM30\n")).gives(FANUC, NONE, &[word]);
-    Scene::of(&format!("{begin}G91 G28 Z0.\nM30\n")).gives(LINUXCNC, CLEAN, &[]);
-    Scene::of(&format!("{begin}G91 G28 Z0.\nG90\nM30\n")).gives(FANUC, CLEAN, &[]);
-    Scene::of(&format!("{begin}G52 X1.\nM30\n")).gives(LINUXCNC, NONE, &[word]);
-    Scene::of(&format!("%\n{begin}G91 G0 Z1.\n%\n")).gives(LINUXCNC, NONE, &[word]);
-    let cycles = "G81 X-4. Y0. Z1. R3.\nG80\nG99 G81 X-5. Z1. R3.\nG80\nG0 Z20.\nG90\nM30\n";
-    Scene::of(&format!("{begin}{cycles}")).gives(FANUC, NONE, &[word]);
-    // LinuxCNC keeps the unit and the length offset, of all that M30 leaves.
-    let moves = "G0 X-6. Y0. Z20.\nG1 X4. Z1.\nG0 Z20.";
-    let unit = format!("G90 G54 S900 M3 F100.\nG43 H1\n{moves}\nG20\nM30\n");
-    Scene::of(&unit).gives(LINUXCNC, NONE, &["V0516 3 G20"]);
-    let length = format!("{begin}G43 H1\nG0 Z20.\nM30\n");
-    Scene::of(&length).gives(LINUXCNC, NONE, &["V0516 2 G43"]);
-    let stated = format!("{begin}G0 G90 Z20.\nG20 G55\nM30\n");
-    Scene::of(&stated).gives(LINUXCNC, CLEAN, &[]);
-    // G49 at the start moves Z by the length that the run before has left.
-    let cancels = "G21 G90 G54 G49\nG0 X-6. Y0.\nG43 H1 Z20.\nS900 M3\nG1 X-4. Z1. F100.\nM30\n";
-    Scene::of(cancels).gives(FANUC, NONE, &["V0516 1 G43"]);
-    Scene::of(cancels).gives(HAAS, NONE, &["V0516 1 G43"]);
-    Scene::of(&cancels.replace("M30", "G49\nM30")).gives(LINUXCNC, CLEAN, &[]);
-    // The operator can turn the switch for optional blocks between two runs.
-    let moves = "G0 X-6. Y0. Z20.\nG1 X-4. Z1.\nG0 Z20.";
-    let switched = Scene::new(&format!("/G52 X0\n{moves}\n/G52 X-8."));
-    switched.gives(LINUXCNC, NONE, &["V0516 3 G52"]);
-    Scene::new(&format!("/G52 X0\n{moves}")).gives(LINUXCNC, CLEAN, &[]);
-    // A new origin and a shift, which cancel each other where both are kept.
-    let both = format!("G43 H1\nG55\n{moves}\nG10 L2 P2 X40. Y0. Z-400.\nG52 X-40.\nG0 X-6.\nG49");
-    let mut both = Scene::new(&both).placed();
-    both.job += "G55 = [0, 0, -400]\n";
-    both.gives(FANUC, NONE, &["V0516 4 G10"]);
-    both.gives(LINUXCNC, CLEAN, &[]);
+fn what_a_program_leaves_in_force_is_said() {
+    let begin = "G21 G90 G54 S9000 M3 F100.\nG0 X-6. Y0. Z20.\nG1 X-4. Z1.\nG0 Z20.\n";
+    let left = |end: &str, control| {
+        let checked = Scene::of(&format!("{begin}{end}")).check(control);
+        checked.assert(CLEAN, &[], end);
+        checked.rows.into_iter().find(|row| row.code == "V0516").map(|row| row.text)
+    };
+    for (end, control, words) in [
+        ("G91 G28 Z0.\nM30\n", FANUC, Some("G91 in force")),
+        ("G91 G28 Z0.\nM30\n", LINUXCNC, None),
+        ("G91 G28 Z0.\nG90\nM30\n", FANUC, None),
+        ("G52 X1.\nM30\n", LINUXCNC, Some("G52 in force")),
+        ("G92 X1.\nM30\n", FANUC, Some("G92 in force")),
+        ("G92 X1.\nM30\n", LINUXCNC, None),
+        ("G98 G81 X-4. Z12. R15.\nM30\n", FANUC, Some("G81 without G80 in force")),
+        ("G68 X0. Y0. R30.\nM30\n", FANUC, Some("G68 in force")),
+        ("M30\n", FANUC, None),
+    ] {
+        let said = left(end, control);
+        assert_eq!(said.is_some(), words.is_some(), "{end}: {said:?}");
+        assert!(said.is_none_or(|said| words.is_some_and(|words| said.contains(words))), "{end}");
+    }
 }
 
 /// A program that begins with a return along one axis is followed from its first position on.
@@ -257,21 +245,6 @@ fn a_tool_that_is_thinner_than_the_points_of_the_stock_are_apart_is_named() {
             &format!("[stock]\nbox = [[-20, -20, 12], [20, 20, 20]]\nspacing = {spacing}\n");
         scene.gives(LINUXCNC, verdict, &[pattern]);
     }
-}
-
-/// LinuxCNC keeps the initial level of a series of cycles that no word has ended; others may keep the cycle.
-#[test]
-fn a_series_of_cycles_is_left_to_the_next_run() {
-    let blocks = |end: &str| {
-        format!(
-            "G91 G28 Z0.\nG90 G43 H1\nG98 G81 X-2. Y0. Z0.5 R3.\nX2.\nG0 X10. Y0. Z20.\n\
-             G81 X10. Y0. Z12. R15.\nX14.\n{end}"
-        )
-    };
-    let left = "V0516 2 G81";
-    Scene::new(&blocks("")).placed().gives(LINUXCNC, NONE, &[left]);
-    let ended = Scene::new(&blocks("G80")).placed().check(LINUXCNC);
-    assert!(!ended.has("V0516 G81"), "{ended:?}");
 }
 
 #[test]
@@ -338,19 +311,6 @@ fn what_is_not_checked_is_named_without_being_open() {
     assert!(!scene.with_report(rules("linuxcnc"), is_open).expect("a result"));
     // Words that change nothing are no gap.
     assert!(!scene.check(LINUXCNC).has("V0501"));
-}
-
-/// 10 mm at 100 mm/min along X and a dwell, after a motion from where nobody knows; then rates, and another reading.
-#[test]
-fn cycle_times_are_those_of_each_tool() {
-    let scene = Scene::new("G0 X-6. Y0. Z20.\nG1 X4.\nG4 P2.\nG0 Z30.");
-    let times = scene.check(LINUXCNC).times;
-    let [time] = &times[..] else { panic!("{times:?}") };
-    assert_eq!((time.tool, time.feed, time.rapid, time.dwell), (None, 6.0, None, 2.0));
-    assert_eq!((time.unknown, time.first_unknown), (2, Some(2)));
-    // 10 mm of Z at 3000 mm/min.
-    let [time] = scene.with_rates([3000; 3]).check(LINUXCNC).times[..] else { panic!("a time") };
-    assert!((time.rapid.expect("rates") - 0.2).abs() < 1e-9 && time.unknown == 1, "{time:?}");
 }
 
 /// Each reading of a program keeps its stock: together they have no more points than one may have.

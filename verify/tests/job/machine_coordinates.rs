@@ -85,18 +85,6 @@ fn an_axis_turns_alone_in_an_aligned_plane() {
         "G0 A0. C0.\nG43 H1\nG0 X40. Y0. Z50.\nG68.2 X0. Y0. Z0. I0. J0. K0.\nG53.1\nG53 C90.\nG43.4 H1\nG0 X40. Y0. Z50.\nG49",
     );
     scene("a.nc", &text, TRUNNION, G54).gives_by(stays(), NONE, &["V0420 11"]);
-    // In feed the axes move straight, whatever rapid traverse does.
-    let text = klartext(
-        "L A+0 C+90 R0 FMAX M3\nL X+0 Y+0 R0 FMAX\nL Z+1 R0 FMAX\nPLANE SPATIAL SPA+0 SPB+0 SPC+0 TURN FMAX\nL X+0 Y+0 R0 FMAX\n\
-         L X-100 Y-100 R0 FMAX M91\nL X+100 Y+0 R0 F1000 M91\nL Z+0 R0 FMAX M91\nPLANE RESET STAY",
-    );
-    let rules = crate::scene::rules("heidenhain").with(Rule::Rapid, Choice::EachAxis);
-    let length = |rules: &ControlRules| {
-        let scene = scene("a.h", &text, TRUNNION, G54);
-        scene.with_report(rules.clone(), |report| report.cycle_times()[0].feed).expect("a report")
-    };
-    let straight = crate::scene::rules("heidenhain");
-    assert_eq!(length(&rules), length(&straight));
 }
 
 /// A tool change under tool centre point control moves Z of the machine: the tip is beside the place that the program has stated.
@@ -313,4 +301,73 @@ fn retracts_are_followed_as_far_as_the_machine_states_them() {
     three_axes("G53 G0 Z0.", HAAS, same, CLEAN, &[]);
     // Z rises to 500 on this machine.
     three_axes("G53 G0 Z0.", HAAS, ["limits = [-500, 0]", "limits = [0, 500]"], NONE, &["V0404"]);
+}
+
+/// An axis about which the tool can be turned freely is left, or turned to a place of the control's own: what comes after it is not
+/// known, unless the axis stands at 0.
+#[test]
+fn a_free_axis_is_known_at_zero_alone() {
+    let plane = |first: &str| {
+        klartext(&format!(
+            "L A+0 C+0 R0 FMAX M3\nL X+0 Y+0 FMAX\nL Z+150 FMAX\nPLANE SPATIAL {first} TURN FMAX SEQ-\nL X+0 Y+0 Z+150 FMAX\n\
+             PLANE SPATIAL SPA+0 SPB+0 SPC+0 TURN FMAX\nPLANE RESET STAY\nL Z+150 FMAX\nL X+60 Y+0 FMAX\nL Z+10 F500\n\
+             L Z+150 FMAX"
+        ))
+    };
+    let scene = |file, text: &str| scene(file, text, TRUNNION, G54);
+    scene("a.h", &plane("SPA-30 SPB+0 SPC+80")).gives(HEIDENHAIN, NONE, &["V04 first at line 8"]);
+    let upright = scene("a.h", &plane("SPA-30 SPB+0 SPC+0")).with("anyway = true");
+    assert!(!upright.check(HEIDENHAIN).rows.iter().any(|row| row.is("V04 first at line 8")));
+    let swivel = |turn: &str| {
+        sinumerik(&format!(
+            "G0 A0 C0\nG0 X0 Y0\nG0 Z150\nCYCLE800(0,\"TABLE\",0,39,0,0,0,{turn},-30,0,0,0,0,-1)\nG0 X0 Y0 Z150\n\
+             CYCLE800(0,\"TABLE\",0,39,0,0,0,0,0,0,0,0,0,-1)\nCYCLE800()\nG0 Z150\nG0 X60 Y0\nG1 Z10 F500\nG0 Z150"
+        ))
+    };
+    scene("a.mpf", &swivel("80")).gives(SIEMENS, NONE, &["V04 first at line 10"]);
+}
+
+/// Heidenhain turns an axis to an angle from -180 to 180 degrees as to one that is programmed, and not by the shortest way.
+#[test]
+fn an_alignment_turns_an_axis_the_way_of_its_rule() {
+    let text = |way: &str| {
+        klartext(&format!(
+            "L A+0 C+0 R0 FMAX M3{way}\nL X+0 Y+0 FMAX\nL Z+150 FMAX\nL C+150 FMAX\nL C+300 FMAX\nPLANE SPATIAL SPA-30 SPB+0 SPC+300 \
+             STAY SEQ-\nL A+Q120 C+Q122 FMAX\nL X+0 Y+47 Z+150 FMAX\nL Z+38.67 FMAX\nPLANE SPATIAL SPA-30 SPB+0 SPC+10 STAY SEQ-\n\
+             L A+Q120 C+Q122 FMAX\nL Z+150 FMAX\nPLANE RESET STAY\nL Z+0 R0 FMAX M91"
+        ))
+    };
+    let post = |way: &str| {
+        let limited =
+            TRUNNION.replace("point = [0, 0, -480]", "point = [0, 0, -480], limits = [-120, 20]");
+        let scene = scene("a.h", &text(way), &limited, G54).with("anyway = true");
+        scene.obstacle([-35.0, -64.0, -40.0], [-16.0, -45.0, 34.0])
+    };
+    let rotary = |choice| crate::scene::rules("heidenhain").with(Rule::Rotary, choice);
+    post("").gives_by(rotary(Choice::WithinTurn), FINDINGS, &["V0101 13 the clamp"]);
+    post("").gives_by(rotary(Choice::Shortest), CLEAN, &[]);
+    post(" M126").gives_by(rotary(Choice::WithinTurn), CLEAN, &[]);
+    // 300 degrees may count as -60, to which it would turn all around.
+    assert!(post("").check_by(rotary(Choice::Counts)).has("V04 first at line 9"));
+    // An axis with limits turns to the angle itself: from -135 by 225 degrees, and not by -135.
+    let text = klartext(
+        "L A+0 C+0 R0 FMAX M3\nL X+0 Y+0 FMAX\nL Z+150 FMAX\nL C-135 FMAX\nPLANE SPATIAL SPA+45 SPB+0 SPC-135 TURN FMAX SEQ+\n\
+         L X+0 Y-35.36 FMAX\nL Z+49.5 FMAX\nPLANE SPATIAL SPA+0 SPB+45 SPC+0 TURN FMAX SEQ+\nL Z+150 FMAX\nPLANE RESET STAY\n\
+         L Z+0 R0 FMAX M91",
+    );
+    let limited =
+        TRUNNION.replace("point = [0, 0, -500]", "point = [0, 0, -500], limits = [-9999, 9999]");
+    let limited = scene("a.h", &text, &limited, G54).with("anyway = true");
+    let limited = limited.obstacle([-35.0, -64.0, -40.0], [-16.0, -45.0, 34.0]);
+    limited.gives(HEIDENHAIN, FINDINGS, &["V0101 10 the clamp"]);
+}
+
+/// Machine coordinates across the plane, and a retract in a frame whose z is not the tool's.
+#[test]
+fn lengths_across_the_plane_and_retracts_beside_the_tool_are_refused() {
+    let scene = |blocks: &str| scene("a.mpf", &sinumerik(blocks), TRUNNION, G54);
+    scene("G0 A0 C0\nG18\nG0 SUPA Z-430").gives(SIEMENS, NONE, &["P0120 7 G18"]);
+    let tilted = "G0 A0 C0\nG0 X0 Y0\nG0 Z150\nCYCLE800(0,\"TABLE\",0,57,0,0,0,-30,0,0,0,0,0,-1)\nG0 X0 Y-60\nG0 Z40\nAROT X40\n\
+         G0 X0 Y10 Z10\nCYCLE800(5,\"TABLE\",0,57,0,0,0,-30,0,0,0,0,0,-1,100)\nG0 X0 Y0 Z150";
+    scene(tilted).gives(SIEMENS, NONE, &["P0120 12"]);
 }

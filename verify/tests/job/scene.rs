@@ -13,7 +13,7 @@ use touchoff_verify::gcode::{Choice, ControlRules, Rule, SubprogramFile, Subprog
 use touchoff_verify::job::{Body, NoVerdict};
 use touchoff_verify::machine::{Link, Machine};
 use touchoff_verify::{
-    CycleTime, Job, JobError, JobFile, JobReport, JobTool, MachineProgramError, Program, Verdict,
+    Job, JobError, JobFile, JobReport, JobTool, MachineProgramError, Program, Verdict,
 };
 
 pub(crate) const CLEAN: Verdict = Verdict::Clean;
@@ -111,7 +111,6 @@ impl Row {
 pub(crate) struct Checked {
     pub(crate) verdict: Verdict,
     pub(crate) rows: Vec<Row>,
-    pub(crate) times: Vec<CycleTime>,
 }
 
 impl Checked {
@@ -133,12 +132,12 @@ impl Checked {
                 rows.push(Row::new(refusal.code(), refusal.line(), &refusal));
             }
         }
-        Checked { verdict: report.verdict(), rows, times: report.cycle_times() }
+        Checked { verdict: report.verdict(), rows }
     }
 
     pub(crate) fn refused(error: &JobError) -> Checked {
         let rows = vec![Row::new(error.code(), line_of(error), &error)];
-        Checked { verdict: Verdict::None, rows, times: Vec::new() }
+        Checked { verdict: Verdict::None, rows }
     }
 
     pub(crate) fn has(&self, pattern: &str) -> bool {

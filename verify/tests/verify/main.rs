@@ -3,7 +3,6 @@
 
 mod bodies;
 mod cases;
-mod cycle_time;
 mod joints;
 mod machines;
 mod oracle;

@@ -20,7 +20,6 @@ use touchoff::Escaped;
 use touchoff_drawing::{Content as Drawn, TextRendering, svg};
 use touchoff_import::Libraries;
 use touchoff_verify::job::Severity;
-use touchoff_verify::{CYCLE_TIME_ASSUMPTIONS, CycleTime};
 
 const STYLE: &str = include_str!("style.css");
 const SCRIPT: &str = include_str!("viewer.js");
@@ -59,7 +58,6 @@ pub(super) fn html(content: &Content<'_>) -> Result<String, Failure> {
                     (view(content))
                     (findings(content))
                     (along_program(content)?)
-                    (cycle_time(content))
                     (tools(content)?)
                     (assumptions(content))
                     (timing(content)?)
@@ -247,60 +245,6 @@ fn along_program(content: &Content<'_>) -> Result<Markup, Failure> {
     Ok(html! {
         section { h2 { "Along the program" } @for part in &parts { (part) } }
     })
-}
-
-/// Returns the time of each tool in motion, with the assumptions; nothing of CL data without feeds and delays.
-fn cycle_time(content: &Content<'_>) -> Markup {
-    let times = content.checked.cycle_times();
-    if times.is_empty() {
-        return html! {};
-    }
-    let row = |tool: &str, parts: [Option<f64>; 4], unknown: usize, line: Option<usize>| {
-        html! {
-            tr {
-                th { (tool) }
-                @for seconds in parts { td.number { (seconds.map_or("not known".to_owned(), duration)) } }
-                td { @if let Some(line) = line { (unknown) ", the first in line " (line) } }
-            }
-        }
-    };
-    let parts =
-        |time: &CycleTime| [Some(time.feed), time.rapid, Some(time.dwell), Some(time.known())];
-    let all = [0, 1, 2, 3].map(|k| times.iter().map(|time| parts(time)[k]).sum::<Option<f64>>());
-    let unknown = times.iter().map(|time| time.unknown).sum();
-    let first = times.iter().filter_map(|time| time.first_unknown).min();
-    html! {
-        section {
-            h2 { "Cycle time" }
-            table.times {
-                thead {
-                    tr {
-                        th { "tool" } th { "in feed" } th { "in rapid traverse" } th { "in dwells" } th { "together" }
-                        th { "not known and not counted" }
-                    }
-                }
-                tbody {
-                    @for time in &times {
-                        @let tool = time.tool.map_or("before a tool change".to_owned(), |number| format!("T{number}"));
-                        (row(&tool, parts(time), time.unknown, time.first_unknown))
-                    }
-                    @if times.len() > 1 { (row("all", all, unknown, first)) }
-                }
-            }
-            p.note { (CYCLE_TIME_ASSUMPTIONS) "." }
-        }
-    }
-}
-
-/// Formats a time in seconds, with a decimal.
-fn duration(seconds: f64) -> String {
-    let tenths = (10.0 * seconds).round();
-    let (minutes, rest) = ((tenths / 600.0).floor(), tenths % 600.0);
-    if minutes > 0.0 {
-        format!("{minutes} min {:04.1} s", rest / 10.0)
-    } else {
-        format!("{:.1} s", rest / 10.0)
-    }
 }
 
 /// Returns the tools: drawings, and what is proved about them.

@@ -1,13 +1,12 @@
 //! Summary of a program on its machine: what it uses, and the gaps, which are everything that a verdict about it leaves open.
 
 use super::{Assumption, BlockError, MachineProgram, Obstacle};
-use crate::check::CycleTime;
 use crate::codes::faults;
 use crate::gcode::{
     BlockLine, Choice, ControlSetup, LengthOffset, NoteKind, ProgramNote, Rule, Spindle,
     StatedTool, Step, SubprogramLine, WorkOffset,
 };
-use crate::machine::{LimitViolation, Machine, SingularPass};
+use crate::machine::{LimitViolation, SingularPass};
 use nalgebra::Vector3;
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::fmt;
@@ -69,8 +68,6 @@ pub struct MachineSummary {
     pub(crate) direction_assumed: Option<BlockLine>,
     /// Singular passes, each with its line.
     pub singular: Vec<(BlockLine, SingularPass)>,
-    /// The time of each tool, in the order of their first motions.
-    pub times: Vec<CycleTime>,
     /// The lowest and the highest corner of the blank that the program states, in program coordinates and in millimetres.
     pub blank: Option<[[f64; 3]; 2]>,
     /// The tools that comments of the program describe.
@@ -508,16 +505,6 @@ impl fmt::Display for Gap {
 }
 
 impl MachineSummary {
-    /// Returns the time of a tool on a machine.
-    pub(super) fn time_of(&mut self, tool: Option<u32>, machine: &Machine) -> &mut CycleTime {
-        let known = self.times.iter().position(|time| time.tool == tool);
-        let index = known.unwrap_or_else(|| {
-            self.times.push(CycleTime::new(tool, machine));
-            self.times.len() - 1
-        });
-        &mut self.times[index]
-    }
-
     /// Returns the use of the tool of a step, which begins with it if the tool is new.
     pub(super) fn use_of(&mut self, step: &Step) -> &mut ToolUse {
         let number = step.state.tool;
@@ -711,14 +698,14 @@ impl MachineSummary {
                 | NoteKind::EmptyCycle
                 | NoteKind::UncalledCycle
                 | NoteKind::RoundedRadius
-                | NoteKind::OffsetOrShift
-                | NoteKind::LeftModes { .. } => GapWeight::Open,
+                | NoteKind::OffsetOrShift => GapWeight::Open,
                 NoteKind::RoundedCorners
                 | NoteKind::Spiral { .. }
                 | NoteKind::AssumedMode { .. }
                 | NoteKind::ToolChange
                 | NoteKind::Ignored { .. }
                 | NoteKind::Endless
+                | NoteKind::LeftModes { .. }
                 | NoteKind::HelixStart
                 | NoteKind::Stop
                 | NoteKind::ExecutedOptionalBlock

@@ -1,7 +1,7 @@
 //! Words that change what positions mean: tools and their lengths, work offsets, shifts, tool centre point
 //! control, rotated and tilted planes.
 
-use super::{AXES, Control, Motion};
+use super::{AXES, Control, Motion, Returned};
 use crate::gcode::block::{Block, Code, Group, Keyword};
 use crate::gcode::error::{combination, missing, not_read, same_group};
 use crate::gcode::note::NoteKind;
@@ -230,10 +230,10 @@ impl Control {
             Some(_) => false,
             None => self.depends_on_length(block),
         };
-        let Some(by_g53) = self.returned.filter(|_| matters) else { return };
+        let Some(returned) = self.returned.filter(|_| matters) else { return };
         self.returned = None;
         let cancels = match self.choice(Rule::ReferenceReturn) {
-            Choice::CancelsLength => !by_g53,
+            Choice::CancelsLength => returned != Returned::MachineHeight,
             Choice::CancelsLengthByG53 => true,
             _ => false,
         };
@@ -271,7 +271,8 @@ impl Control {
         }
         if let Some(code) = block.code_of(Group::Length) {
             let (before, height) = (Arc::clone(&self.state), self.position[2]);
-            let has_returned = self.returned.is_some();
+            let has_returned =
+                matches!(self.returned, Some(Returned::Height | Returned::MachineHeight));
             self.length(block, code)?;
             let one_shot = block.tenths_of(Group::OneShot);
             let is_return = matches!(one_shot, Some(280 | 300));

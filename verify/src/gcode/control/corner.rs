@@ -2,8 +2,7 @@
 //! between two lines or arcs, the chamfer between two lines.
 //!
 //! The motion that states a corner is held until the next one (known: Fanuc, *Optional chamfering and corner R*; Siemens, *NC
-//! programming*; Heidenhain, *Klartext programming*). Its feed is that of the motion before it, unless the language states another one:
-//! F in the block of RND and CHF, FRC and FRCM.
+//! programming*; Heidenhain, *Klartext programming*).
 //!
 //! An arc of radius r that touches both motions has its centre at the distance r from each, on the side to which the contour turns:
 //! at a crossing of two curves, a line and its parallel, or a circle with the radius R ± r about the centre of an arc. Of several
@@ -12,7 +11,7 @@
 use super::{Control, FeedMode, in_plane};
 use crate::gcode::error::{combination, missing, not_read};
 use crate::gcode::rules::{Choice, Rule};
-use crate::gcode::{Feed, GcodeFault, Plane, Step, StepPath};
+use crate::gcode::{GcodeFault, Plane, Step, StepPath};
 use nalgebra::Vector2;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -27,18 +26,6 @@ pub(in crate::gcode) struct Corner {
     pub(in crate::gcode) length: f64,
     /// Set if it is written without a decimal point.
     pub(in crate::gcode) is_whole: bool,
-    pub(in crate::gcode) feed: CornerFeed,
-}
-
-/// The feed of a corner.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::gcode) enum CornerFeed {
-    /// That of the motion before it.
-    OfMotion,
-    /// Its own, above 0, in the unit and with the meaning of F.
-    Own(f64),
-    /// Its own, whose speed is not known.
-    Unknown,
 }
 
 /// The shape of a corner, and the length that gives its size.
@@ -61,8 +48,6 @@ pub(super) struct HeldMotion {
     corner: Corner,
     /// In millimetres.
     length: f64,
-    /// Feed of the corner.
-    feed: Option<Feed>,
     plane: Plane,
     /// Set in the block that states the corner.
     is_new: bool,
@@ -99,7 +84,11 @@ impl Control {
         }
         let Some(corner) = corner else { return Ok(()) };
         let word = corner.word;
-        let is_increment = corner.is_whole && self.choice(Rule::WholeNumbers) == Choice::Increments;
+        // `,R` has the letter of a radius.
+        let is_increment = corner.is_whole
+            && self.choice(Rule::WholeNumbers) == Choice::Increments
+            && (corner.shape != CornerShape::Round
+                || self.choice(Rule::WholeRadii) == Choice::Increments);
         let factor = if is_increment { self.modal.increment() } else { 1.0 };
         let length = self.modal.millimetres(corner.length * factor);
         if length <= 0.0 || length.is_nan() {
@@ -115,17 +104,8 @@ impl Control {
         let is_moved = self.pending.len() > first;
         let step = self.pending.pop_back_if(|step| is_moved && is_contour(step));
         let Some(step) = step else { return Err(beside(&corner)) };
-        let feed = match corner.feed {
-            CornerFeed::OfMotion => self.modal.corner_feed,
-            own => own,
-        };
-        let feed = match feed {
-            CornerFeed::OfMotion => step.feed,
-            CornerFeed::Own(feed) => self.speed(feed),
-            CornerFeed::Unknown => None,
-        };
         let plane = self.modal.plane;
-        self.held_motion = Some(HeldMotion { step, corner, length, feed, plane, is_new: true });
+        self.held_motion = Some(HeldMotion { step, corner, length, plane, is_new: true });
         Ok(())
     }
 
@@ -320,7 +300,7 @@ impl Parallel {
 
 /// Returns a motion up to the corner at its end, the corner if there is one, and the motion after it.
 fn trimmed(held: &HeldMotion, next: &Step, plane: Plane) -> Result<Vec<Step>, GcodeFault> {
-    let HeldMotion { step, corner, length, feed, .. } = held;
+    let HeldMotion { step, corner, length, .. } = held;
     let is_one_frame = Arc::ptr_eq(&step.state, &next.state) && held.plane == plane;
     let elements = [step, next].map(|step| Element::new(step, plane));
     let ([Some(before), Some(after)], true) = (elements, is_contour(next) && is_one_frame) else {
@@ -378,7 +358,7 @@ fn trimmed(held: &HeldMotion, next: &Step, plane: Plane) -> Result<Vec<Step>, Gc
         ..step.clone()
     };
     let first = Step { start: step.start, ..moved(&before, step) };
-    let between = Step { feed: *feed, ..moved(&between, step) };
+    let between = moved(&between, step);
     let last = Step { end: next.end, ..moved(&after, next) };
     Ok(vec![first, between, last])
 }

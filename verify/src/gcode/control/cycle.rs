@@ -46,8 +46,6 @@ impl Control {
         self.check_tilted(block)?;
         self.check_position(block)?;
         let normal = self.modal.plane.normal();
-        let has_dwell =
-            matches!(number, 82 | 86 | 88 | 89) || block.value('P').is_some_and(|time| time > 0.0);
         let cycle = self.cycle_words(block, number, &word)?;
         let levels = self.levels(&cycle)?;
         let repeats = self.repeats(block)?;
@@ -68,9 +66,6 @@ impl Control {
             self.notes.add(self.block(), NoteKind::EmptyCycle);
         }
         let axes = self.take_axes(block);
-        if has_dwell {
-            self.add_dwell(None, repeats as usize);
-        }
         // LinuxCNC compares the initial level, and not the present one, with R.
         if repeats > 0
             && is_below(cycle.initial, levels.retract)

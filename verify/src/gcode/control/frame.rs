@@ -12,7 +12,7 @@ use crate::gcode::block::{Block, Group};
 use crate::gcode::error::combination;
 use crate::gcode::rules::Choice;
 use crate::gcode::state::{Frame, LengthOffset, Rotation, Tcp, WorkOffset, about};
-use crate::gcode::{Alignment, GcodeFault, StepPath, Z_ALONE};
+use crate::gcode::{Alignment, GcodeFault, Plane, StepPath, Z_ALONE};
 use nalgebra::{Matrix3, Vector3};
 
 /// The frames in force besides the settable one.
@@ -134,7 +134,10 @@ impl Frames {
         let Frames { swivel, programmed, .. } = self;
         match swivel {
             Some(SwivelFrame { frame, aligned }) => {
-                Rotation::Tilted { frame: composed(frame, programmed), aligned: *aligned }
+                // A programmable rotation about X or Y tilts z away from the tool.
+                let keeps_z = programmed.rotation[(2, 2)] == 1.0;
+                let aligned = *aligned && keeps_z;
+                Rotation::Tilted { frame: composed(frame, programmed), aligned }
             }
             None if programmed.rotation == Matrix3::identity() => Rotation::Off,
             None if programmed.rotation[(2, 2)] == 1.0 => Rotation::Plane { frame: *programmed },
@@ -185,6 +188,9 @@ impl Control {
         if self.state.tcp != Tcp::Off {
             let condition = "tool centre point control is on";
             return Err(combination("CYCLE800", condition, self.tcp_remedy()));
+        }
+        if self.modal.plane != Plane::Xy {
+            return Err(combination("CYCLE800", "G18 or G19 is in force", "write G17 before"));
         }
         if swivel.follows_tip {
             let condition = "its tip of the tool keeps its place while the axes turn";

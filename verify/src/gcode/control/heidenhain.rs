@@ -183,8 +183,6 @@ impl Control {
         // sideways.
         let is_homeward = distance.is_none() && is_upright;
         (step.rapid, step.spindle, step.is_homeward) = (rapid, spindle, is_homeward);
-        // Its feed is that of MB, which is not kept.
-        step.feed = None;
     }
 
     /// Moves along Z to a level in program coordinates, in millimetres. A tap turns with the motion.
@@ -220,7 +218,7 @@ impl Control {
         true
     }
 
-    /// Sets the feed in millimetres per minute, and returns the one before.
+    /// Sets F, and returns the one before.
     pub(in crate::gcode) fn replace_feed(&mut self, feed: Option<f64>) -> Option<f64> {
         std::mem::replace(&mut self.modal.feed, feed)
     }

@@ -1,6 +1,6 @@
 //! Holes of Sinumerik's drilling cycles, in absolute levels along Z.
 
-use super::{Control, Modal, Motion, Spindle};
+use super::{Control, Motion, Spindle};
 use crate::gcode::block::{Block, Distance, Number};
 use crate::gcode::error::combination;
 use crate::gcode::state::Tcp;
@@ -61,14 +61,7 @@ impl Control {
         if self.position[axis] != safe {
             self.move_along(axis, true, safe);
         }
-        // All but CYCLE81 have a time in which the tool stays at the depth.
-        if hole.cycle != "CYCLE81" {
-            self.add_dwell(None, 1);
-        }
-        let Modal { motion, feed, .. } = self.modal;
-        if hole.has_feed {
-            self.modal.feed = None;
-        }
+        let motion = self.modal.motion;
         if hole.tapping.is_some() {
             self.modal.motion = Some(Motion::Cycle(84));
         }
@@ -76,7 +69,7 @@ impl Control {
         if hole.returns_at_feed {
             self.move_along(axis, false, safe);
         }
-        (self.modal.motion, self.modal.feed) = (motion, feed);
+        self.modal.motion = motion;
         if self.position[axis] != retract {
             self.move_along(axis, true, retract);
         }

@@ -1,6 +1,6 @@
 //! Motions: lines, arcs, returns to reference positions, machine coordinates.
 
-use super::{AXES, Control, Motion, in_plane};
+use super::{AXES, Control, Motion, Returned, in_plane};
 use crate::gcode::block::{Block, Group};
 use crate::gcode::error::{ArcFault, combination, missing, not_read};
 use crate::gcode::rules::{Choice, Rule};
@@ -192,6 +192,7 @@ impl Control {
         self.check_position(block)?;
         let (end, _, commanded) = self.take_end(block);
         let path = path(&words, self.position, end)?;
+        self.check_turn(word, &path, &end, words.turns)?;
         self.check_radii(&path, &end)?;
         if let Some(radius) = words.radius
             && self.stated(Rule::Dialect) != Some(Choice::Rs274Ngc)
@@ -200,6 +201,34 @@ impl Control {
         }
         self.push(false, end, commanded, path);
         Ok(())
+    }
+
+    /// Refuses an arc that releases of LinuxCNC take for a full circle, or a full circle that they take for an arc: its ends are apart by
+    /// rounding alone (`CIRCLE_FUZZ` of `_posemath.c` up to 2.8, `min_arc_angle` of `emccanon.cc`).
+    fn check_turn(
+        &self,
+        word: &str,
+        path: &StepPath,
+        end: &Position,
+        turns: u32,
+    ) -> Result<(), GcodeFault> {
+        let StepPath::Arc { plane, sweep, .. } = *path else { return Ok(()) };
+        // Of the last turn.
+        let angle = sweep.abs() - TAU * f64::from(turns - 1);
+        let ends = [&self.position, end].map(|position| in_plane(position, plane.axes()));
+        let [Some(from), Some(to)] = ends else { return Ok(()) };
+        let distance = (from[0] - to[0]).hypot(from[1] - to[1]);
+        let is_doubtful = match angle < TAU {
+            true => angle < LEAST_SWEEP,
+            false => distance > 0.0 && distance < SAME_POINT,
+        };
+        match is_doubtful && self.stated(Rule::Dialect) == Some(Choice::Rs274Ngc) {
+            true => {
+                let condition = "its ends differ by so little that it is a full circle, or none, by the release";
+                Err(combination(word, condition, "write a line, or the end as the start"))
+            }
+            false => Ok(()),
+        }
     }
 
     /// Returns whether the centre of an arc is absolute by its own words (`I=AC(…)`), of which both coordinates are then.
@@ -264,7 +293,7 @@ impl Control {
         self.move_to_machine(axes);
         // G53 can cancel the length offset as G28 does, by a parameter of Fanuc (5001, EVO).
         if axes[2].is_some() && self.state.length != LengthOffset::Off {
-            self.returned = self.returned.or(Some(true));
+            self.returned = self.returned.or(Some(Returned::MachineHeight));
         }
         Ok(())
     }
@@ -349,7 +378,8 @@ impl Control {
         self.move_machine(named, target, StepPath::Line);
         let step = self.pending.back_mut().expect("the step that was added");
         (step.is_return, step.is_homeward) = (true, is_homeward);
-        self.returned = (self.state.length != LengthOffset::Off).then_some(false);
+        let returned = if named[2] { Returned::Height } else { Returned::OtherAxes };
+        self.returned = (self.state.length != LengthOffset::Off).then_some(returned);
         Ok(())
     }
 
@@ -427,6 +457,8 @@ pub(super) struct ArcWords {
 /// Distance below which start and end are the same point, in millimetres. It is a hundredth of the least
 /// increment of a control, and far above the rounding of a position.
 const SAME_POINT: f64 = 1e-5;
+/// The least angle of an arc that is none for LinuxCNC's earlier releases, with a margin, in radians.
+const LEAST_SWEEP: f64 = 2e-6;
 /// Smallest radius, in millimetres.
 const LEAST_RADIUS: f64 = 1e-7;
 /// Largest relative difference of the radii of start and end: LinuxCNC's.

@@ -2,7 +2,8 @@
 
 use super::{Control, FeedMode, Motion};
 use crate::gcode::Plane;
-use crate::gcode::state::WorkOffset;
+use crate::gcode::rules::{Choice, Rule};
+use crate::gcode::state::{LengthOffset, Rotation, WorkOffset};
 use touchoff::Unit;
 
 /// A quantity that a control reports. Lengths are in the unit of the program, angles in degrees, modes as the numbers of their G words.
@@ -14,8 +15,6 @@ pub(in crate::gcode) enum Report {
     Machine(usize),
     /// The origin of a work offset along an axis.
     Origin(WorkOffset, usize),
-    /// The sum of G52 and G92 along an axis.
-    Shift(usize),
     /// The reference position along an axis (G28).
     Home(usize),
     /// The second reference position along an axis (G30).
@@ -24,10 +23,8 @@ pub(in crate::gcode) enum Report {
     Tool,
     /// The number of the tool that the next M6 changes to.
     StagedTool,
-    /// The stated length of the tool in the spindle.
+    /// The length of the tool in the spindle, if it is the length offset in force.
     ToolLength,
-    /// The length offset in force.
-    LengthOffset,
     /// The last H.
     Register,
     /// F.
@@ -70,19 +67,22 @@ impl Control {
             Motion::Cycle(number) => f64::from(number),
         };
         match report {
-            Report::Position(axis) => on(axis, self.position[axis]),
+            Report::Position(axis) => {
+                on(axis, self.position[axis].filter(|_| self.is_position_plain(axis)))
+            }
+            // That of the tool's centre, which is not the programmed one.
+            Report::Machine(_) if self.compensation.is_some() => None,
             Report::Machine(axis) => on(axis, self.state.to_machine(self.position)[axis]),
             Report::Origin(offset, axis) => on(axis, self.origin_of(offset).0[axis]),
-            Report::Shift(axis) => on(axis, self.state.shift[axis]),
             Report::Home(axis) => on(axis, self.home.map(|home| home[axis])),
             Report::SecondHome(axis) => on(axis, self.second_home.map(|home| home[axis])),
             Report::Tool => self.state.tool.map(f64::from),
             Report::StagedTool => self.staged.map(f64::from),
             Report::ToolLength => {
-                let length = self.state.tool.and_then(|tool| self.lengths.get(&tool));
-                on(2, length.copied())
+                let LengthOffset::On { register, .. } = self.state.length else { return None };
+                let length = self.state.length.length();
+                on(2, length.filter(|_| self.state.tool == Some(register)))
             }
-            Report::LengthOffset => on(2, self.state.length.length()),
             Report::Register => self.last_register.map(f64::from),
             Report::Feed => modal.feed,
             Report::Line => Some(self.line as f64),
@@ -109,5 +109,25 @@ impl Control {
                 WorkOffset::Additional(_) | WorkOffset::Off => None,
             },
         }
+    }
+
+    /// Returns whether the position along an axis is what controls report: neither a compensated one nor one in a rotated or mirrored
+    /// frame, nor a height under a length offset that a return can have cancelled.
+    fn is_position_plain(&self, axis: usize) -> bool {
+        let keeps_length = self.stated(Rule::ReferenceReturn) == Some(Choice::KeepsLength);
+        self.compensation.is_none()
+            && self.state.rotation == Rotation::Off
+            && self.mirror == [None; 3]
+            && (axis != 2 || self.returned.is_none() || keeps_length)
+    }
+
+    /// Returns whether the lengths of the program are in the unit of the machine, as far as that is stated.
+    pub(in crate::gcode) fn is_in_machine_unit(&self) -> bool {
+        let unit = match self.stated(Rule::Unit) {
+            Some(Choice::Inch) => Unit::Inch,
+            Some(_) => Unit::Millimetre,
+            None => return false,
+        };
+        self.modal.unit == unit
     }
 }

@@ -597,7 +597,7 @@ impl Reader<'_> {
             }
             let parameter = parameter(self, cursor, depth + 1)?;
             self.close(cursor)?;
-            return Ok(Some(f64::from(u8::from(self.scope.has(&parameter)))));
+            return Ok(Some(f64::from(u8::from(self.scope.has(&parameter)?))));
         }
         cursor.take(b'[');
         let first = self.binary(cursor, depth + 1, 1)?.unwrap_or(0.0);

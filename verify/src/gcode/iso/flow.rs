@@ -615,6 +615,7 @@ impl<'a> Flow<'a> {
         }
         let return_to = self.place;
         self.place = body;
+        variables.is_called = true;
         let hidden = match locals {
             Some(locals) => Hidden::Macro {
                 locals: mem::replace(&mut variables.locals, locals),
@@ -626,6 +627,30 @@ impl<'a> Flow<'a> {
         Ok(())
     }
 
+    /// Refuses to leave a `repeat` of the present call that begins after a line. LinuxCNC keeps the number of executions that remain for
+    /// its next time (`repeat_count`).
+    fn check_repeats(&self, word: &'static str, line: usize) -> Result<(), GcodeFault> {
+        let depth = self.calls.len();
+        let is_left = |repeat: &Repeat| repeat.depth == depth && repeat.line > line;
+        match self.repeats.iter().any(is_left) {
+            true => {
+                let condition = "a `repeat` is being executed, whose count LinuxCNC keeps";
+                Err(combination(word, condition, "end the `repeat` before"))
+            }
+            false => Ok(()),
+        }
+    }
+
+    /// Refuses `break` and `continue` of the loop that begins at a place where LinuxCNC does not execute them as such: in a program with
+    /// `do` loops, which they end or go on with later (`doing_break`, `doing_continue`), and out of a `repeat`.
+    pub(super) fn check_leaving(&self, head: Place, word: &'static str) -> Result<(), GcodeFault> {
+        if self.sources.iter().any(|source| source.structure.has_do) {
+            let condition = "the program has a `do` loop, which it can end, too";
+            return Err(combination(word, condition, "write `while` loops, or `if` without it"));
+        }
+        self.check_repeats(word, head.line)
+    }
+
     /// Obeys `endsub`, or `return`, whose label has no meaning.
     pub(super) fn end_sub(
         &mut self,
@@ -633,17 +658,12 @@ impl<'a> Flow<'a> {
         word: &'static str,
         variables: &mut Variables,
     ) -> Result<(), GcodeFault> {
-        let depth = self.calls.len();
         match self.calls.last() {
             Some(call)
                 if call.role == Role::Sub
                     && (call.label == *label || word == Role::Return.word()) =>
             {
-                // LinuxCNC keeps the number of those that remain for the next execution (`control_save_offset`).
-                if self.repeats.iter().any(|repeat| repeat.depth == depth) {
-                    let condition = "a `repeat` is being executed, whose count LinuxCNC keeps";
-                    return Err(combination(word, condition, "end the `repeat` before"));
-                }
+                self.check_repeats(word, 0)?;
                 self.leave(variables)
             }
             Some(call) if call.label == *label => Err(GcodeFault::MixedCall {
@@ -665,6 +685,7 @@ impl<'a> Flow<'a> {
         line: usize,
         variables: &mut Variables,
     ) -> Result<(), GcodeFault> {
+        self.check_repeats("M99", 0)?;
         match (self.calls.last(), target) {
             (Some(call), _) if call.role == Role::Sub => Err(GcodeFault::MixedCall {
                 label: call.label.to_string(),
@@ -702,6 +723,10 @@ impl<'a> Flow<'a> {
             Some(call) if call.repeats > 0 => {
                 call.repeats -= 1;
                 self.place = call.body;
+                // Each execution is a call of its own (`enter_context`).
+                if matches!(call.hidden, Hidden::Names(_)) {
+                    variables.locals.named.clear();
+                }
             }
             Some(Call { hidden: Hidden::Macro { .. }, .. }) if self.modal.is_some() => {
                 let condition = "G66 of the macro is in force, and stays so in the caller";
@@ -719,6 +744,7 @@ impl<'a> Flow<'a> {
     /// Returns to the caller.
     fn end_call(&mut self, call: Call, variables: &mut Variables) {
         self.place = call.return_to;
+        variables.is_called = self.depth() > 0;
         match call.hidden {
             Hidden::Macro { locals, modal } => {
                 let own = mem::replace(&mut variables.locals, locals);

@@ -8,7 +8,7 @@ use super::expression::{
 use super::flow::before_semicolon;
 use super::variables::{Parameter, Scope, assignment};
 use crate::gcode::block::{Block, Code, Group, Keyword, Number};
-use crate::gcode::control::{Corner, CornerFeed, CornerShape};
+use crate::gcode::control::{Corner, CornerShape};
 use crate::gcode::error::{combination, missing, not_read};
 use crate::gcode::rules::{Choice, Rule};
 use crate::gcode::{GcodeFault, LARGEST_NUMBER, MAX_ASSIGNMENTS, unquoted};
@@ -202,7 +202,7 @@ impl Line {
             'R' => (",R", CornerShape::Round),
             _ => (",C", CornerShape::Chamfer),
         };
-        let corner = Corner { word, shape, length, is_whole, feed: CornerFeed::OfMotion };
+        let corner = Corner { word, shape, length, is_whole };
         match self.block.corner.replace(corner) {
             None => Ok(()),
             Some(_) => Err(GcodeFault::Repeated { word: letter }),

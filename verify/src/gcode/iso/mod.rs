@@ -8,7 +8,6 @@ mod blank;
 mod expression;
 mod flow;
 mod line;
-mod linuxcnc;
 mod structure;
 mod system;
 mod variables;
@@ -20,7 +19,7 @@ use super::block::{Block, Code, Group};
 use super::control::Control;
 use super::error::{combination, missing, not_read};
 use super::files::{self, in_file};
-use super::interpreter::{End, Progress};
+use super::interpreter::Progress;
 use super::note::NoteKind;
 use super::rules::{Choice, Rule};
 use super::{ControlSetup, GcodeError, GcodeFault, Repeated, SubprogramFile, shown, work};
@@ -88,14 +87,6 @@ impl<'a> Program<'a> {
                 (true, false) => control.state_rule(Rule::Dialect, Choice::Iso),
                 (false, true) => control.state_rule(Rule::Dialect, Choice::Rs274Ngc),
                 _ => {}
-            }
-        }
-        if control.stated(Rule::Dialect) == Some(Choice::Rs274Ngc) {
-            if structure.has_subprograms() {
-                linuxcnc::check_text(extent.text)?;
-            }
-            for (index, other) in (1..).zip(&others) {
-                linuxcnc::check_text(other.text()).map_err(|error| in_file(index, error))?;
             }
         }
         if let Some((line, has_blocks)) = extent.left_out {
@@ -365,9 +356,10 @@ impl<'a> Program<'a> {
                 let expected = "M99 P with a sequence number of the caller";
                 let target = block.take_whole('P', 1, 99_999_999, expected)?;
                 check_used(block)?;
+                self.variables.forget_returned();
                 if self.flow.is_main() && target.is_none() {
                     control.notes.add(control.block(), NoteKind::Endless);
-                    return Ok(Progress::Ended(End::Repeat));
+                    return Ok(Progress::Ended);
                 }
                 match (target, self.flow.returns_to_file(), self.waiting.last_mut()) {
                     (Some(target), true, Some(caller)) => {
@@ -393,7 +385,7 @@ impl<'a> Program<'a> {
                 if let Some(line) = self.flow.other_program() {
                     control.notes.add(line.into(), NoteKind::OtherProgram);
                 }
-                return Ok(Progress::Ended(End::Stop));
+                return Ok(Progress::Ended);
             }
             Some(_) => {
                 control.pause_spindle();
@@ -609,10 +601,11 @@ impl<'a> Program<'a> {
             }
             Role::Sub => {
                 check_end(cursor)?;
+                self.variables.forget_returned();
                 self.flow.pass_sub(&label)
             }
             Role::Call => {
-                let mut locals = Locals { numbered: scope.inherited(), ..Locals::default() };
+                let mut locals = Locals::of_call();
                 let mut number = 0;
                 while next(cursor)? == Some(b'[') {
                     number += 1;
@@ -623,7 +616,6 @@ impl<'a> Program<'a> {
                 }
                 check_end(cursor)?;
                 self.check_order(&label, control)?;
-                self.variables.set_returned(None);
                 let callee = Callee { label, role: Role::Sub, times: 1, locals: Some(locals) };
                 self.call(callee, control)
             }
@@ -711,6 +703,7 @@ impl<'a> Program<'a> {
             }
             Role::Break | Role::Continue => {
                 check_end(cursor)?;
+                self.flow.check_leaving(clause.head, role.word())?;
                 if self.flow.structure().head_role(clause) == Some(Role::Repeat) {
                     let (meaning, remedy) = ("no word of a `repeat`", "write a `while`");
                     return Err(not_read(role.word(), meaning, remedy));
@@ -797,19 +790,15 @@ fn is_heidenhain(control: &Control) -> bool {
 
 /// Refuses a line that the control does not read, whatever its words.
 fn check_text(text: &str, control: &Control) -> Result<(), GcodeFault> {
-    match control.stated(Rule::Dialect) {
-        Some(Choice::Rs274Ngc) => linuxcnc::check_line(text),
-        Some(Choice::Heidenhain) => {
-            let Some(found) = before_semicolon(text).chars().find(|c| matches!(c, '(' | '#'))
-            else {
-                return Ok(());
-            };
-            let meaning = "no word of DIN/ISO programs of Heidenhain";
-            let remedy = "write comments after `;` and numbers as such, or state another `dialect`";
-            Err(not_read(format!("`{found}`"), meaning, remedy))
-        }
-        _ => Ok(()),
+    if !is_heidenhain(control) {
+        return Ok(());
     }
+    let Some(found) = before_semicolon(text).chars().find(|c| matches!(c, '(' | '#')) else {
+        return Ok(());
+    };
+    let meaning = "no word of DIN/ISO programs of Heidenhain";
+    let remedy = "write comments after `;` and numbers as such, or state another `dialect`";
+    Err(not_read(format!("`{found}`"), meaning, remedy))
 }
 
 /// Refuses values that depend on when the assignment of their line takes effect.

@@ -5,7 +5,10 @@ use super::flow::{Place, line};
 use super::line::{Label, OWord, Role, begin, loop_number, next, o_word, statement};
 use super::variables::Scope;
 use crate::gcode::{GcodeError, GcodeFault};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
+
+/// Largest number of decisions and loops that are open at once.
+const MAX_OPEN: usize = 1000;
 
 /// A subprogram.
 #[derive(Clone, Copy, Debug)]
@@ -68,6 +71,8 @@ pub(super) struct Structure {
     /// The loops of Fanuc, by their first lines.
     loops: BTreeMap<usize, Loop>,
     pub(super) lines: usize,
+    /// Set if it has a `do` loop of O-words.
+    pub(super) has_do: bool,
     /// The first line with a statement that only macros of Fanuc and Haas have.
     pub(super) fanuc: Option<usize>,
     /// The first line with an O-word that only LinuxCNC has, `sub`, `endsub` and `call` excepted.
@@ -84,6 +89,8 @@ impl Structure {
         let mut labels: HashMap<Label, usize> = HashMap::new();
         let mut open: Option<(Label, usize)> = None;
         let mut groups: Vec<Group> = Vec::new();
+        // The labels of `do` loops of the present subprogram.
+        let mut done: HashSet<Label> = HashSet::new();
         let mut place = Place { offset: 0, line: 1 };
         while let Some((line, after)) = line(text, place) {
             let here = place;
@@ -102,6 +109,13 @@ impl Structure {
             let Ok(OWord { label, role }) = word else { continue };
             if role.is_decision() {
                 found.linuxcnc.get_or_insert(here.line);
+                if let Some(problem) = problem_of(line, &label, role, &groups, &done) {
+                    return Err(nesting(here.line, &label, role.word(), problem));
+                }
+                if role == Role::Do {
+                    found.has_do = true;
+                    done.insert(label.clone());
+                }
                 found.add(&mut groups, Key::OWord(label), role, here, after);
                 continue;
             }
@@ -121,6 +135,7 @@ impl Structure {
                         found.titles.push(here);
                     }
                     groups.clear();
+                    done.clear();
                     found.subprograms.insert(label, Subprogram { role, body: after, after: None });
                 }
                 (Role::EndSub, Some((opened, _))) if *opened == label => {
@@ -129,6 +144,7 @@ impl Structure {
                     }
                     open = None;
                     groups.clear();
+                    done.clear();
                 }
                 (Role::EndSub, Some(_)) => {
                     let problem = "another subprogram is open: end that before";
@@ -276,6 +292,34 @@ impl Structure {
         let next = self.titles.partition_point(|title| title.line <= line);
         let first = next.checked_sub(1).map_or(1, |last| self.titles[last].line);
         [first, self.titles.get(next).map_or(usize::MAX, |title| title.line - 1)]
+    }
+}
+
+/// Returns what LinuxCNC does not execute as it is written in a line of a decision or a loop, if there is such a thing.
+fn problem_of(
+    line: &str,
+    label: &Label,
+    role: Role,
+    groups: &[Group],
+    done: &HashSet<Label>,
+) -> Option<&'static str> {
+    let is_open =
+        || groups.iter().any(|group| matches!(&group.key, Key::OWord(open) if open == label));
+    if line.trim_start().starts_with('/') {
+        Some(
+            "it is an optional block, which LinuxCNC leaves out only where it comes to it: remove `/`",
+        )
+    } else if groups.len() >= MAX_OPEN {
+        Some("more than 1,000 decisions and loops are open: end some before")
+    } else if matches!(role, Role::If | Role::Do | Role::While | Role::Repeat)
+        && done.contains(label)
+        && (role == Role::Do || !is_open())
+    {
+        Some(
+            "a `do` before has the same label, and LinuxCNC goes back to that one: write another label",
+        )
+    } else {
+        None
     }
 }
 

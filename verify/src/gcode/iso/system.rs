@@ -1,7 +1,7 @@
 //! Variables by which a control reports its state.
 //!
 //! Fanuc and Haas: B-64694, "System variables" (#4001 to #4130 modal information, #5001 to #5046 positions, #5201 to #5328 work
-//! offsets). LinuxCNC: "G-Code overview" (#5021 to #5428, predefined names). Lengths are in the unit of the program. A variable that
+//! offsets). LinuxCNC: "G-Code overview" (#5161 to #5428, predefined names). Lengths are in the unit of the program. A variable that
 //! is not listed here has a value that only the machine knows: timers, probing, signals.
 
 use super::expression::Language;
@@ -90,12 +90,13 @@ fn work_offset(number: u32) -> Option<(WorkOffset, usize)> {
 /// Returns the value of a variable of the control, if the control knows it.
 pub(super) fn numbered(number: u32, language: Language, control: &Control) -> Option<f64> {
     let report = |report| control.report(report);
-    if let Some((offset, axis)) = work_offset(number) {
-        let is_known = language == Language::LinuxCnc || number <= 5326;
-        return is_known.then(|| report(Report::Origin(offset, axis))).flatten();
-    }
+    // LinuxCNC keeps these in the unit of the machine.
+    let of_machine = |of: Report| report(of).filter(|_| control.is_in_machine_unit());
     match language {
         Language::Fanuc => {
+            if let Some((offset, axis)) = work_offset(number).filter(|_| number <= 5326) {
+                return report(Report::Origin(offset, axis));
+            }
             // The end of the block before: the tip in the workpiece's coordinates.
             if let Some(axis) = axis(number, 5001) {
                 return report(Report::Position(axis));
@@ -119,17 +120,18 @@ pub(super) fn numbered(number: u32, language: Language, control: &Control) -> Op
                 _ => None,
             }
         }
+        // Releases differ in #5021 to #5029 and in #5081 to #5089. G92.2 ends a shift that #5211 to #5219 keep.
         Language::LinuxCnc => {
-            let axes = [
-                (5021, Report::Machine as fn(usize) -> Report),
-                (5161, Report::Home),
-                (5181, Report::SecondHome),
-                (5211, Report::Shift),
-                (5420, Report::Position),
-            ];
-            for (first, of_axis) in axes {
+            if let Some((offset, axis)) = work_offset(number) {
+                return of_machine(Report::Origin(offset, axis));
+            }
+            if let Some(axis) = axis(number, 5420) {
+                return report(Report::Position(axis));
+            }
+            let homes = [(5161, Report::Home as fn(usize) -> Report), (5181, Report::SecondHome)];
+            for (first, of_axis) in homes {
                 if let Some(axis) = axis(number, first) {
-                    return report(of_axis(axis));
+                    return of_machine(of_axis(axis));
                 }
             }
             match number {
@@ -138,10 +140,8 @@ pub(super) fn numbered(number: u32, language: Language, control: &Control) -> Op
                     offset => Some(6.0 + (10.0 * (offset - 59.0)).round()),
                 },
                 5400 => report(Report::Tool),
-                5403 => report(Report::ToolLength),
-                5401 | 5402 | 5404..=5409 => Some(0.0),
-                5083 => report(Report::LengthOffset),
-                5081 | 5082 | 5084..=5089 => Some(0.0),
+                // The offset in force, or that of the tool in the spindle, by the release.
+                5403 => of_machine(Report::ToolLength),
                 _ => None,
             }
         }

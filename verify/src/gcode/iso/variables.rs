@@ -2,7 +2,7 @@
 //!
 //! | | Fanuc and Haas | LinuxCNC |
 //! |---|---|---|
-//! | local to a call | #1 to #33, vacant in a macro until they are given | #1 to #30, those of the caller until they are given; names |
+//! | local to a call | #1 to #33, vacant in a macro until they are given | #1 to #30, 0 until they are given; names |
 //! | common | #100 to #199, #500 to #999 | #31 to #5000, names with `_` |
 //! | of the control | #0 (vacant), from #1000 | from #5001, some names with `_` |
 //!
@@ -73,6 +73,8 @@ pub(super) struct Locals {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Variables {
     pub(super) locals: Locals,
+    /// Set in a subprogram.
+    pub(super) is_called: bool,
     common: BTreeMap<u32, Value>,
     global: BTreeMap<String, f64>,
     /// Variables of the control that the setup declares.
@@ -102,6 +104,14 @@ fn is_system(number: u32, language: Language) -> bool {
             Language::Fanuc => FIRST_SYSTEM_FANUC,
             Language::LinuxCnc => FIRST_SYSTEM_LINUXCNC,
         }
+}
+
+impl Locals {
+    /// Returns those of a subprogram of O-words before its arguments (`convert_control_functions`: "zero the remaining params").
+    pub(super) fn of_call() -> Locals {
+        let numbered = (1..=LAST_LOCAL_LINUXCNC).map(|number| (number, Some(0.0))).collect();
+        Locals { numbered, ..Locals::default() }
+    }
 }
 
 impl Variables {
@@ -139,6 +149,12 @@ impl Variables {
     pub(super) fn set_returned(&mut self, value: Value) {
         self.global.insert("_value".to_owned(), value.unwrap_or(0.0));
         self.global.insert("_value_returned".to_owned(), f64::from(u8::from(value.is_some())));
+    }
+
+    /// Forgets that value: M99 and an `endsub` that is passed over change it, but not in all releases.
+    pub(super) fn forget_returned(&mut self) {
+        self.global.remove("_value");
+        self.global.remove("_value_returned");
     }
 
     /// Assigns a variable that is not one of the control, and returns whether it was one that can be assigned.
@@ -179,14 +195,6 @@ impl<'a> Scope<'a> {
     /// Creates the scope of a line that is executed.
     pub(super) fn new(variables: &'a Variables, control: &'a Control) -> Scope<'a> {
         Scope { variables, control, language: language(control) }
-    }
-
-    /// Returns the variables that a subprogram of O-words finds before its arguments: those of its caller.
-    pub(super) fn inherited(&self) -> BTreeMap<u32, Value> {
-        match self.language {
-            Some(Language::LinuxCnc) => self.variables.locals.numbered.clone(),
-            _ => BTreeMap::new(),
-        }
     }
 
     /// Returns the value of a variable.
@@ -236,11 +244,19 @@ impl<'a> Scope<'a> {
     }
 
     /// Returns whether LinuxCNC has a variable: every number of its table, and names with a value.
-    pub(super) fn has(&self, parameter: &Parameter) -> bool {
+    ///
+    /// # Errors
+    /// For a name without a value that an earlier program can have left: a global one, one of the main program, and those of
+    /// configurations (`_ini[…]`).
+    pub(super) fn has(&self, parameter: &Parameter) -> Result<bool, ExpressionFault> {
         match parameter {
-            Parameter::Numbered(number) => *number < LINUXCNC_PARAMETERS,
-            Parameter::Named(name) if system::is_predefined(name) => true,
-            Parameter::Named(_) => self.get(parameter, Language::LinuxCnc).is_ok(),
+            Parameter::Numbered(number) => Ok(*number < LINUXCNC_PARAMETERS),
+            Parameter::Named(name) if system::is_predefined(name) => Ok(true),
+            Parameter::Named(name) => match self.get(parameter, Language::LinuxCnc) {
+                Ok(_) => Ok(true),
+                Err(_) if self.variables.is_called && !name.starts_with('_') => Ok(false),
+                Err(fault) => Err(fault),
+            },
         }
     }
 }

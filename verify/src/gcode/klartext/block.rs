@@ -23,9 +23,8 @@ pub(super) enum Coordinate {
 pub(super) enum Feed {
     /// Rapid traverse, in this block alone.
     Rapid,
+    /// A number, per minute, per turn (FU) or per tooth (FZ).
     Rate(f64),
-    /// A feed per turn or per tooth (FU, FZ).
-    PerTurn(f64),
     /// The feed of the last TOOL CALL (`F AUTO`).
     OfTool,
 }
@@ -100,7 +99,7 @@ impl Words {
     /// Refuses a word that a statement does not use.
     pub(super) fn check_used(&self, head: &'static str) -> Result<(), GcodeFault> {
         let unused = [
-            ("R", self.radius.is_some_and(|radius| radius != 0.0) && head != "CR"),
+            ("R", self.radius.is_some() && head != "CR"),
             ("DR", self.clockwise.is_some() && !matches!(head, "C" | "CR" | "CP")),
             ("PR", self.polar_radius.is_some() && !matches!(head, "LP" | "CTP")),
             ("PA", self.polar_angle.is_some() && !matches!(head, "LP" | "CTP" | "CP")),
@@ -242,19 +241,21 @@ impl<'a> Scale<'a> {
     /// Reads R0, RL, RR or a radius.
     fn radius(&self, cursor: &mut Cursor, words: &mut Words) -> Result<(), GcodeFault> {
         cursor.advance();
-        let start = cursor.rest();
-        let word = start.split(|c: char| c.is_whitespace() || c == ';').next().unwrap_or_default();
-        let side = match word {
-            "0" => Side::On,
-            "L" | "l" => Side::Left,
-            "R" | "r" => Side::Right,
-            "+" | "-" => {
-                let shown = format!("R{word}");
-                let meaning = "cutter compensation of a motion along one axis";
-                return Err(not_read(shown, meaning, "write the position of the tool's centre"));
-            }
+        let sign = cursor.rest().split(|c: char| c.is_whitespace() || c == ';').next();
+        if let Some(sign @ ("+" | "-")) = sign {
+            let shown = format!("R{sign}");
+            let meaning = "cutter compensation of a motion along one axis";
+            return Err(not_read(shown, meaning, "write the position of the tool's centre"));
+        }
+        // The next word may follow without a blank: `R0FMAX`.
+        let side = match cursor.here().map(|byte| byte.to_ascii_uppercase()) {
+            Some(b'L') => Side::Left,
+            Some(b'R') => Side::Right,
             _ => {
-                words.radius = Some(self.length(cursor)?);
+                match self.length(cursor)? {
+                    0.0 => words.side = Some(Side::On),
+                    radius => words.radius = Some(radius),
+                }
                 return Ok(());
             }
         };
@@ -266,12 +267,8 @@ impl<'a> Scale<'a> {
     /// Reads a feed.
     pub(super) fn feed(&self, cursor: &mut Cursor) -> Result<Feed, GcodeFault> {
         cursor.advance();
-        let mut is_per_turn = false;
         match cursor.here().map(|byte| byte.to_ascii_uppercase()) {
-            Some(b'U' | b'Z') => {
-                is_per_turn = true;
-                cursor.advance();
-            }
+            Some(b'U' | b'Z') => cursor.advance(),
             Some(b'T') => {
                 return Err(not_read("FT", "a feed by the time of a block", "write F"));
             }
@@ -288,8 +285,7 @@ impl<'a> Scale<'a> {
         if cursor.take_prefix("AUTO") {
             return Ok(Feed::OfTool);
         }
-        let rate = value(cursor, self.known)?;
-        Ok(if is_per_turn { Feed::PerTurn(rate) } else { Feed::Rate(rate) })
+        Ok(Feed::Rate(value(cursor, self.known)?))
     }
 
     fn m_word(

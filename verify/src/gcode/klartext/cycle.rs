@@ -9,7 +9,7 @@
 //! control's own: a note says so.
 
 use super::Program;
-use super::block::Coordinate;
+use super::block::{Coordinate, Words};
 use super::expression::{Parameter, value};
 use super::line::Cursor;
 use super::words::{Entry, Treatment, find_cycle};
@@ -39,14 +39,6 @@ pub(super) struct Cycle {
     is_fast: bool,
     /// The direction in which cycle 202 leaves the wall.
     side: Option<Side>,
-    /// Feed down, if the cycle states one. That of a thread is its pitch.
-    feed: Option<f64>,
-    /// Feed with which the tool leaves the hole.
-    retract_feed: Option<f64>,
-    /// Dwell at the depth (Q211), in seconds.
-    dwell: f64,
-    /// Set if the tool rests at the set-up clearance, too (Q210).
-    rests_above: bool,
     /// The bore that cycle 208 mills.
     bore: Option<Bore>,
 }
@@ -229,9 +221,6 @@ impl Program<'_> {
         match entry.treatment {
             Treatment::Refused(remedy) => return Err(not_read(word(), entry.meaning, remedy)),
             Treatment::PassedOver => {
-                if number == 9 && part != Some(0) {
-                    control.add_dwell(None, 1);
-                }
                 if part.unwrap_or(0) == 0 {
                     let word = word();
                     control.notes.add(control.block(), NoteKind::PassedOver { word });
@@ -345,11 +334,11 @@ impl Program<'_> {
         let mut words = scale.words(cursor, &mut self.codes)?;
         words.check_used("CYCL CALL")?;
         if !is_position {
-            if words.has_axes() || words.is_call || words.is_machine {
-                return Err(cursor.unexpected("an M word alone after CYCL CALL"));
+            if words != (Words { feed: words.feed, ..Words::default() }) {
+                let condition = "its block has other words than F and M words of the machine";
+                return Err(combination("CYCL CALL", condition, "write them in a block before"));
             }
             self.start_words(control)?;
-            self.state_feed(control);
             self.call_cycle(0.0, control)?;
             return self.end_words(control);
         }
@@ -374,13 +363,9 @@ impl Program<'_> {
         words.feed = Some(words.feed.unwrap_or(super::block::Feed::Rapid));
         self.start_words(control)?;
         // Its feed is that of the way to the position alone (known: TNC 640, *Cycle programming*).
-        let (is_per_turn, feed) = (self.is_per_turn, control.replace_feed(None));
-        self.note_feed(&words);
-        self.state_feed(control);
+        let feed = control.replace_feed(None);
         let moved = self.line(words, control);
         control.replace_feed(feed);
-        self.is_per_turn = is_per_turn;
-        self.state_feed(control);
         moved?;
         self.call_cycle(lift, control)?;
         self.end_words(control)
@@ -408,16 +393,7 @@ impl Program<'_> {
             control.notes.add(control.block(), NoteKind::EmptyCycle);
             return Ok(());
         }
-        if cycle.dwell > 0.0 {
-            control.add_dwell(Some(cycle.dwell), 1);
-        }
-        if cycle.rests_above {
-            control.add_dwell(None, 1);
-        }
-        let feed = control.replace_feed(cycle.feed);
-        let result = self.execute_cycle(&cycle, lift, control);
-        control.replace_feed(feed);
-        result
+        self.execute_cycle(&cycle, lift, control)
     }
 
     fn execute_cycle(
@@ -438,7 +414,6 @@ impl Program<'_> {
             Some(bore) => mill(bore, [top, bottom], control)?,
             None => control.move_to_level(bottom, false, is_tap),
         }
-        control.replace_feed(cycle.retract_feed);
         match cycle.number {
             201 | 203 => control.move_to_level(top, cycle.is_fast, false),
             202 => {
@@ -491,9 +466,7 @@ fn infeeds(
         depth = (depth - infeed.decrement).max(infeed.least.min(depth));
         if index % infeed.count == 0 {
             control.move_to_level(level, false, false);
-            control.replace_feed(cycle.retract_feed);
             control.move_to_level(top, is_fast, false);
-            control.replace_feed(cycle.feed);
             control.move_to_level((level + infeed.stop).min(top), true, false);
         }
         steps += 3;
@@ -606,31 +579,9 @@ fn cycle(given: &Given, unit: f64) -> Result<Cycle, GcodeFault> {
         }
         _ => None,
     };
-    let down = given.get(206).filter(|feed| feed.is_finite());
-    let feed = if is_thread(number) { None } else { down };
-    let retract_feed = match (number, given.get(208)) {
-        // 0 is the feed down.
-        (201..=203, Some(feed)) if feed.is_finite() && feed != 0.0 => Some(feed),
-        _ => feed,
-    };
-    let (dwell, rests_above) = (given.length(211).max(0.0), given.length(210) > 0.0);
     let is_fast =
         matches!(number, 201..=203) && given.get(208).is_some_and(|feed| feed >= RAPID_FEED);
-    Ok(Cycle {
-        number,
-        clearance,
-        depth,
-        surface,
-        second,
-        infeed,
-        is_fast,
-        side,
-        feed,
-        retract_feed,
-        dwell,
-        rests_above,
-        bore,
-    })
+    Ok(Cycle { number, clearance, depth, surface, second, infeed, is_fast, side, bore })
 }
 
 fn is_thread(number: u32) -> bool {

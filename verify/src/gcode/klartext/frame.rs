@@ -119,28 +119,6 @@ impl Program<'_> {
         }
     }
 
-    /// Takes over the shift, the rotation or both that another run has left. Words about one of them leave the other as it is.
-    pub(in crate::gcode) fn keep_frame(&mut self, left: &Program, [shift, rotation]: [bool; 2]) {
-        let (frame, left) = (&mut self.frame, &left.frame);
-        if shift {
-            (frame.shift, frame.base, frame.doubt) = (left.shift, left.base, left.doubt);
-            frame.allowance = left.allowance;
-        }
-        if rotation {
-            (frame.turn, frame.tilt, frame.aligned) = (left.turn, left.tilt, left.aligned);
-            frame.master_is_positive = left.master_is_positive;
-        }
-    }
-
-    /// Returns the words that can have left the shift of the control, if DL is one of them.
-    pub(in crate::gcode) fn shift_words(&self) -> Option<&'static str> {
-        match (self.frame.base == [0.0; 6], self.frame.has_allowance()) {
-            (_, false) => None,
-            (true, true) => Some("DL of TOOL CALL"),
-            (false, true) => Some("CYCL DEF 7 or DL of TOOL CALL"),
-        }
-    }
-
     /// Executes a line of an old cycle after its number and its part: 7, 8, 10 or 19.
     pub(super) fn old_cycle(
         &mut self,

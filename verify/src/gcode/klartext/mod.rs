@@ -19,11 +19,11 @@ use super::block::{Block, Code};
 use super::control::{Control, StatedModes};
 use super::error::{combination, missing, not_read};
 use super::files::{self, in_file};
-use super::interpreter::{End, Progress};
+use super::interpreter::Progress;
 use super::note::NoteKind;
 use super::rules::{Choice, ControlRules, Rule};
 use super::{ControlSetup, GcodeError, GcodeFault, Repeated, SubprogramFile, shown, unquoted};
-use block::{Feed, Scale, m_entry};
+use block::{Feed, Scale, Words, m_entry};
 use cycle::Cycle;
 pub(super) use cycle::is_ignorable;
 pub(crate) use expression::is_variable;
@@ -64,11 +64,7 @@ pub(super) struct Program<'a> {
     called_tools: BTreeSet<u32>,
     stated_lengths: BTreeSet<u32>,
     /// F of the last TOOL CALL.
-    tool_feed: Option<Feed>,
-    /// Set if the feed in force is per turn or per tooth.
-    is_per_turn: bool,
-    /// The M words in force that change what F means: 103, 109, 116 and 136.
-    feed_words: Vec<u32>,
+    tool_feed: Option<f64>,
     /// Set once a position in program coordinates was executed.
     positioned: bool,
     /// The lowest and the highest corner of the blank, in millimetres.
@@ -151,8 +147,6 @@ impl<'a> Program<'a> {
             called_tools: BTreeSet::new(),
             stated_lengths: setup.lengths.keys().copied().collect(),
             tool_feed: None,
-            is_per_turn: false,
-            feed_words: Vec::new(),
             positioned: false,
             blank: [None; 2],
             block: Block::default(),
@@ -283,7 +277,11 @@ impl<'a> Program<'a> {
                 control.check_corner()?;
                 self.codes.clear();
                 self.codes.push(0);
-                Scale::new(&self.parameters, self.unit).words(&mut cursor, &mut self.codes)?;
+                let scale = Scale::new(&self.parameters, self.unit);
+                if scale.words(&mut cursor, &mut self.codes)? != Words::default() {
+                    let condition = "its block has other words than M words of the machine";
+                    return Err(combination("STOP", condition, "write them in a block before"));
+                }
                 self.start_words(control)?;
                 return self.end_words(control);
             }
@@ -324,7 +322,7 @@ impl<'a> Program<'a> {
                     };
                     control.notes.add(line.into(), kind);
                 }
-                return Ok(Progress::Ended(End::Stop));
+                return Ok(Progress::Ended);
             }
             "RND" | "CHF" => {
                 return Err(missing(upper, "a motion before it, and another one after it"));
@@ -372,14 +370,6 @@ impl<'a> Program<'a> {
         }
         for code in &codes {
             match code {
-                103 | 109 | 116 | 136 => self.feed_words.push(*code),
-                110 => self.feed_words.push(109),
-                111 => self.feed_words.retain(|word| *word != 109),
-                117 => self.feed_words.retain(|word| *word != 116),
-                137 => self.feed_words.retain(|word| *word != 136),
-                _ => {}
-            }
-            match code {
                 3 | 13 => self.m_word(3, control)?,
                 4 | 14 => self.m_word(4, control)?,
                 126 => control.set_shorter_way(true),
@@ -399,16 +389,6 @@ impl<'a> Program<'a> {
         }
         self.codes = codes;
         Ok(())
-    }
-
-    /// Returns whether F of any block is no speed along the path in millimetres per minute: in inches it is in tenths of an inch.
-    fn feed_has_other_meaning(&self) -> bool {
-        self.unit == Unit::Inch || !self.feed_words.is_empty()
-    }
-
-    /// Tells the control whether F is the speed along the path.
-    fn state_feed(&self, control: &mut Control) {
-        control.has_own_feed = self.is_per_turn || self.feed_has_other_meaning();
     }
 
     /// Executes the M words that act at the end of their block.
@@ -432,7 +412,7 @@ impl<'a> Program<'a> {
                 }
                 2 | 30 => {
                     self.note_end(control);
-                    progress = Progress::Ended(End::Stop);
+                    progress = Progress::Ended;
                 }
                 _ => {}
             }
@@ -441,7 +421,7 @@ impl<'a> Program<'a> {
         Ok(progress)
     }
 
-    /// Notes mirrored axes at the end of the program, which the control keeps for the next run or not.
+    /// Notes mirrored axes at the end of the program, which the control does not know.
     fn note_end(&self, control: &mut Control) {
         if self.frame.is_mirrored() {
             let words = "CYCL DEF 8".to_owned();
@@ -657,9 +637,8 @@ impl<'a> Program<'a> {
                     self.block.add('S', number(speed))?;
                 }
                 b'F' => match scale.feed(cursor)? {
-                    feed @ (Feed::Rate(rate) | Feed::PerTurn(rate)) => {
-                        self.tool_feed = Some(feed);
-                        self.is_per_turn = matches!(feed, Feed::PerTurn(_));
+                    Feed::Rate(rate) => {
+                        self.tool_feed = Some(rate);
                         self.block.add('F', number(rate))?;
                     }
                     _ => return Err({ start }.unexpected("F with a number")),
@@ -802,7 +781,6 @@ impl<'a> Program<'a> {
                 self.set_tcp(true, control)
             }
             "DWELL" => {
-                control.add_dwell(None, 1);
                 let word = "FUNCTION DWELL".to_owned();
                 control.notes.add(control.block(), NoteKind::PassedOver { word });
                 Ok(())

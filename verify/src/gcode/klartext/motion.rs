@@ -9,7 +9,7 @@ use super::block::{Coordinate, Feed, Scale, Side, Words};
 use super::flow::Ahead;
 use super::line::{Cursor, expected};
 use crate::gcode::block::{Code, Number};
-use crate::gcode::control::{Circle, Control, Corner, CornerFeed, CornerShape, Curve};
+use crate::gcode::control::{Circle, Control, Corner, CornerShape, Curve};
 use crate::gcode::error::{combination, missing, not_read};
 use crate::gcode::state::{Position, Rotation};
 use crate::gcode::{GcodeFault, Plane, StepPath};
@@ -63,8 +63,6 @@ impl Program<'_> {
         // Words of an arc and polar ones move, also without a coordinate of an axis.
         let has_end = words.has_axes() || head != "L";
         self.start_words(control)?;
-        self.note_feed(&words);
-        self.state_feed(control);
         if words.is_machine || words.retract.is_some() {
             control.check_corner()?;
         }
@@ -234,17 +232,13 @@ impl Program<'_> {
 
     /// Adds the feed of a block.
     fn add_feed(&mut self, words: &Words) -> Result<(), GcodeFault> {
-        let feed = match words.feed {
+        let rate = match words.feed {
+            Some(Feed::Rate(rate)) => rate,
             Some(Feed::OfTool) => {
                 let feed = self.tool_feed;
                 feed.ok_or_else(|| missing("F AUTO", "F in the TOOL CALL before"))?
             }
-            Some(feed) => feed,
-            None => return Ok(()),
-        };
-        let rate = match feed {
-            Feed::Rate(rate) | Feed::PerTurn(rate) => rate,
-            Feed::Rapid | Feed::OfTool => return Ok(()),
+            Some(Feed::Rapid) | None => return Ok(()),
         };
         self.block.add('F', number(rate))
     }
@@ -601,10 +595,9 @@ impl Program<'_> {
             return Err(cursor.unexpected("the radius R after RND"));
         }
         let length = scale.length(&mut cursor)?;
-        let feed = match cursor.peek() {
-            Some(b'F' | b'f') => self.corner_feed(scale.feed(&mut cursor)?),
-            _ => CornerFeed::OfMotion,
-        };
+        if matches!(cursor.peek(), Some(b'F' | b'f')) {
+            scale.feed(&mut cursor)?;
+        }
         cursor.check_end()?;
         self.flow.go_on_at(after);
         let (word, shape) = match is_round {
@@ -612,33 +605,7 @@ impl Program<'_> {
             // At another corner the length can be that of the chamfer or of what it takes of each line.
             false => ("CHF", CornerShape::SquareChamfer),
         };
-        Ok(Some(Corner { word, shape, length, is_whole: false, feed }))
-    }
-
-    /// Returns the feed of a corner that its block states: in millimetres per minute, unless F has another meaning.
-    fn corner_feed(&self, feed: Feed) -> CornerFeed {
-        let stated = match feed {
-            Feed::OfTool => self.tool_feed,
-            other => Some(other),
-        };
-        match stated {
-            Some(Feed::Rate(rate)) if rate > 0.0 && !self.feed_has_other_meaning() => {
-                CornerFeed::Own(rate)
-            }
-            _ => CornerFeed::Unknown,
-        }
-    }
-
-    /// Notes whether F of a block is per turn.
-    pub(super) fn note_feed(&mut self, words: &Words) {
-        match words.feed {
-            Some(Feed::Rate(_)) => self.is_per_turn = false,
-            Some(Feed::PerTurn(_)) => self.is_per_turn = true,
-            Some(Feed::OfTool) => {
-                self.is_per_turn = matches!(self.tool_feed, Some(Feed::PerTurn(_)));
-            }
-            Some(Feed::Rapid) | None => {}
-        }
+        Ok(Some(Corner { word, shape, length, is_whole: false }))
     }
 }
 

@@ -20,7 +20,7 @@ use super::block::Block;
 use super::control::{Control, Hole};
 use super::error::{combination, missing, not_read};
 use super::files::{in_file, without_folder};
-use super::interpreter::{End, Progress};
+use super::interpreter::Progress;
 use super::note::NoteKind;
 use super::rules::{Choice, Rule};
 use super::{ControlSetup, GcodeError, GcodeFault, Repeated, SubprogramFile, shown};
@@ -606,7 +606,7 @@ impl<'a> Program<'a> {
                 if let Some(line) = self.flow.text_after_end() {
                     control.notes.add(line.into(), NoteKind::TextAfterEnd);
                 }
-                return Progress::Ended(End::Stop);
+                return Progress::Ended;
             }
             // It has no parameters, and defines its variables again.
             Left::Again => self.variables.clear(),

@@ -65,6 +65,8 @@ const PASSED_OVER: &[&str] = &[
     "FGROUP",
     "FGREF",
     "FL",
+    "FRC",
+    "FRCM",
     "FD",
     "FPRAON",
     "FPRAOF",
@@ -266,9 +268,9 @@ pub(in crate::gcode) fn has_effect(word: &str) -> bool {
 /// Statements that other languages do not have, besides the words of the tables.
 const STATEMENTS: &[&str] = &[
     "TRANS", "ATRANS", "ROT", "AROT", "CYCLE800", "CYCLE81", "CYCLE82", "CYCLE83", "CYCLE84",
-    "CYCLE840", "CYCLE85", "CYCLE86", "CYCLE89", "MCALL", "EXTCALL", "RND", "CHR", "CHF", "FRC",
-    "FRCM", "SUPA", "GOTOF", "GOTOB", "GOTOC", "GOTOS", "ENDIF", "ENDWHILE", "ENDFOR", "ENDLOOP",
-    "UNTIL", "DEF", "PROC", "RET", "REPEATB", "ORIWKS", "ORIMKS", "ORIAXES", "ORIVECT", "ORIPLANE",
+    "CYCLE840", "CYCLE85", "CYCLE86", "CYCLE89", "MCALL", "EXTCALL", "RND", "CHR", "CHF", "SUPA",
+    "GOTOF", "GOTOB", "GOTOC", "GOTOS", "ENDIF", "ENDWHILE", "ENDFOR", "ENDLOOP", "UNTIL", "DEF",
+    "PROC", "RET", "REPEATB", "ORIWKS", "ORIMKS", "ORIAXES", "ORIVECT", "ORIPLANE",
 ];
 
 /// Returns whether a word is one of Sinumerik alone. Short words are words elsewhere, too, and count at the begin of a line.

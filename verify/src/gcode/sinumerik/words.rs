@@ -5,7 +5,7 @@ use super::table::{Use, use_of};
 use super::text::Cursor;
 use super::{Program, no_subprogram, undefined};
 use crate::gcode::block::{Block, Code, Distance, Group, Keyword, Number};
-use crate::gcode::control::{Control, Corner, CornerFeed, CornerShape, FrameStep};
+use crate::gcode::control::{Control, Corner, CornerShape, FrameStep};
 use crate::gcode::error::{combination, missing, not_read};
 use crate::gcode::interpreter::Progress;
 use crate::gcode::note::NoteKind;
@@ -32,8 +32,6 @@ struct Words {
     exact_path: Option<bool>,
     /// ORIAXES and ORIVECT.
     orientation: Option<Choice>,
-    /// FRC.
-    corner_feed: Option<CornerFeed>,
     /// M17.
     returns: bool,
 }
@@ -84,15 +82,10 @@ impl<'a> Program<'a> {
             offset,
             exact_path,
             orientation,
-            corner_feed,
             returns,
             assigns,
             ignores,
         } = words;
-        // It has no effect in a block without a corner.
-        if let (Some(corner), Some(feed)) = (&mut block.corner, corner_feed) {
-            corner.feed = feed;
-        }
         if let Some(speed) = speed
             && block.code_of(Group::Dwell).is_none()
         {
@@ -141,7 +134,7 @@ impl<'a> Program<'a> {
             let condition = "MCALL is in force, and its block has none of X, Y and Z";
             return Err(combination("a rotary axis", condition, "write MCALL alone before"));
         }
-        if !block.is_empty() || block.vector.is_some() || block.modal_corner_feed.is_some() {
+        if !block.is_empty() || block.vector.is_some() {
             control.execute(block)?;
             self.flow.count_steps(control.pending.len())?;
             if ignores {
@@ -316,21 +309,11 @@ impl<'a> Program<'a> {
                     _ => ("CHF", CornerShape::Chord),
                 };
                 let length = number(cursor, &self.variables)?;
-                let corner =
-                    Corner { word, shape, length, is_whole: false, feed: CornerFeed::OfMotion };
+                let corner = Corner { word, shape, length, is_whole: false };
                 match block.corner.replace(corner) {
                     None => Ok(()),
                     Some(_) => Err(combination(word, "its block has another corner", "keep one")),
                 }
-            }
-            "FRC" => {
-                words.corner_feed = Some(self.corner_feed(cursor, upper, CornerFeed::Unknown)?);
-                Ok(())
-            }
-            "FRCM" => {
-                block.modal_corner_feed =
-                    Some(self.corner_feed(cursor, upper, CornerFeed::OfMotion)?);
-                Ok(())
             }
             "TURN" if cursor.take_assignment() => {
                 let value = number(cursor, &self.variables)?;
@@ -368,24 +351,6 @@ impl<'a> Program<'a> {
                 None => Err(no_subprogram(name)),
             },
         }
-    }
-
-    /// Reads the feed of corners after FRC or FRCM; `zero` is what 0 means.
-    fn corner_feed(
-        &self,
-        cursor: &mut Cursor<'a>,
-        word: String,
-        zero: CornerFeed,
-    ) -> Result<CornerFeed, GcodeFault> {
-        if !cursor.take_assignment() {
-            return Err(missing(word, "`=` and a feed"));
-        }
-        let feed = number(cursor, &self.variables)?;
-        Ok(match feed {
-            0.0 => zero,
-            feed if feed > 0.0 => CornerFeed::Own(feed),
-            _ => CornerFeed::Unknown,
-        })
     }
 
     /// Refuses CYCLE832 with more in its second argument than the kind of machining: other digits of it begin or end TRAORI on

@@ -20,7 +20,7 @@ fn reads_a_flank_pass_from_a_file() {
     let program = ClData::read(path).expect("it is a program");
     assert_eq!(program.unit, Some(Unit::Millimetre));
     let ignored: Vec<&str> = program.ignored.iter().map(|(_, word)| word.as_str()).collect();
-    assert_eq!(ignored, ["PARTNO", "LOADTL", "SPINDL"]);
+    assert_eq!(ignored, ["PARTNO", "LOADTL", "SPINDL", "FEDRAT"]);
     assert!(program.check_unit(Unit::Millimetre).is_ok());
     assert!(program.check_unit(Unit::Inch).is_err());
     assert_eq!(program.locations.len(), stops.len());
@@ -39,7 +39,7 @@ fn the_impeller(path: &Path) {
     let program = ClData::read(path).expect("it is a program");
     assert_eq!(program.unit, Some(Unit::Millimetre));
     let ignored: Vec<&str> = program.ignored.iter().map(|(_, word)| word.as_str()).collect();
-    assert_eq!(ignored, ["PARTNO", "LOADTL", "SPINDL"]);
+    assert_eq!(ignored, ["PARTNO", "LOADTL", "SPINDL", "FEDRAT"]);
     let cutting = program.locations.iter().filter(|stop| !stop.rapid).count();
     assert_eq!((cutting, program.locations.len()), (1274, 1302));
     let first = program.locations[0];
@@ -142,37 +142,6 @@ fn lists_what_it_passes_over() {
         (11, "COOLNT"),
     ];
     assert_eq!(program(text).ignored, expected.map(|(line, word)| (line, word.to_owned())));
-}
-
-/// Feeds in mm/min at the first position after a statement, and whether the statement is among the words that were passed over.
-#[test]
-fn a_feed_has_its_unit() {
-    for (statement, feed, is_read) in [
-        ("FEDRAT/250.,MMPM", Some(250.0), true),
-        ("fedrat / mmpm , 250", Some(250.0), true),
-        ("FEDRAT/10,IPM", Some(254.0), true),
-        ("SPINDL/RPM,600,CLW\nFEDRAT/0.25,MMPR", Some(150.0), true),
-        ("FEDRAT/IPR,.01\nSPINDL/600.,RPM,CCLW", Some(152.4), true),
-        ("SPINDL/600,RPM\nSPINDL/ON\nFEDRAT/0.25,MMPR", Some(150.0), true),
-        // A feed per turn of a spindle whose speed is not known.
-        ("FEDRAT/0.25,MMPR", None, true),
-        ("SPINDL/600,RPM\nFEDRAT/0.25,MMPR\nSPINDL/OFF", None, false),
-        ("SPINDL/600,CLW\nFEDRAT/0.25,MMPR", None, false),
-        ("SPINDL/300,SFM,CLW\nFEDRAT/0.25,MMPR", None, false),
-        // A unit that is not stated, another meaning, or no feed.
-        ("FEDRAT/250", None, false),
-        ("FEDRAT/250,MMPM\nFEDRAT/100", None, false),
-        ("FEDRAT/250,MMPM\nFEDRAT/INVERS,AUTO", None, false),
-        ("FEDRAT/250,MMPM\nFEDTO/5", None, false),
-        ("FEDRAT/0,MMPM", None, false),
-        ("FEDRAT/-5,MMPM", None, false),
-    ] {
-        let program =
-            program(&format!("{statement}\nGOTO/1,2,3\nRAPID\nGOTO/1,2,9\nGOTO/1,2,3\nFINI"));
-        let feeds: Vec<_> = program.locations.iter().map(|location| location.feed).collect();
-        assert_eq!(feeds, [feed, None, feed], "{statement}");
-        assert_eq!(program.ignored.is_empty(), is_read, "{statement}: {:?}", program.ignored);
-    }
 }
 
 /// Words that move the tool, words that change the meaning of positions, and unknown words.

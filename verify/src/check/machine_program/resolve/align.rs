@@ -5,7 +5,7 @@ use super::super::{StepFault, UnknownCause};
 use super::frame::Frame;
 use super::{ANGLE_INCREMENT, Located, Resolved, Resolver, known};
 use crate::gcode::{Alignment, Choice, Rotation, Rule, Step};
-use crate::machine::{InverseSolution, JointMotion, Side};
+use crate::machine::{InverseSolution, JointMotion, Letter, Side};
 use nalgebra::{Point3, Vector3};
 
 /// Greatest angle between the tool and z of its plane, in degrees, where the program has turned the axes: angles are written to 0.001
@@ -130,7 +130,73 @@ impl Resolver<'_> {
             let cause = if is_known { UnknownCause::TwoPositions } else { self.cause };
             return Ok(Located::Unknown(cause));
         }
-        Ok(Located::Known(self.angles(&found[0])))
+        let mut angles = self.angles(&found[0]);
+        let dialect = self.setup.rules.get(Rule::Dialect);
+        let is_swivel = matches!(step.alignment, Some(Alignment::Value { .. }));
+        if is_swivel || matches!(dialect, Some(Choice::Heidenhain | Choice::Sinumerik)) {
+            self.forget_free(frame, &found[0], &mut angles);
+        }
+        if dialect == Some(Choice::Heidenhain) {
+            self.turn_counted(frame, step, &mut angles);
+        }
+        Ok(Located::Known(angles))
+    }
+
+    /// Forgets the angle of an axis about which the tool can be turned freely, unless it is 0. Heidenhain leaves it, or turns it to 0, by
+    /// COORD ROT, TABLE ROT and the model; Siemens turns it to one of two positions of its own.
+    fn forget_free(
+        &self,
+        frame: &Frame,
+        solution: &InverseSolution,
+        angles: &mut [Option<f64>; 3],
+    ) {
+        for k in (0..3).filter(|k| solution.kept[*k] && self.has_axis(*k + 3)) {
+            let shown = |angle: &f64| (angle - frame.rotary[k]).rem_euclid(360.0);
+            let is_zero = |angle: &f64| shown(angle).min(360.0 - shown(angle)) < ANGLE_INCREMENT;
+            angles[k] = angles[k].filter(is_zero);
+        }
+    }
+
+    /// Gives aligned angles the turns by which Heidenhain gets there. It turns an axis as to a programmed angle: one with limits to an angle
+    /// from -180 to 180 degrees (iTNC 530, PLANE SPATIAL, examples of SEQ), one without by its rule. An angle below 0 is forgotten where
+    /// the axis counts on and stands beyond half a turn: whether the control means it or the same place a turn higher is not stated.
+    fn turn_counted(&mut self, frame: &Frame, step: &Step, angles: &mut [Option<f64>; 3]) {
+        for (k, angle) in angles.iter_mut().enumerate() {
+            let (Some(from), Some(to)) = (self.joints[k + 3], *angle) else { continue };
+            if self.endless[k] && step.state.shorter_way {
+                continue;
+            }
+            let origin = frame.rotary[k];
+            let shown = (to - origin).rem_euclid(360.0);
+            let is_positive = shown <= 180.0 + ANGLE_INCREMENT;
+            let counted = origin + if is_positive { shown } else { shown - 360.0 };
+            if !self.endless[k] {
+                let ends = [counted, counted + 360.0, counted - 360.0];
+                *angle = ends.into_iter().find(|end| self.is_within_limits(k + 3, *end));
+                continue;
+            }
+            let within = from + shown - (from - origin).rem_euclid(360.0);
+            let is_same = |end: f64| (end - within).abs() < ANGLE_INCREMENT;
+            // Half a turn is known neither way.
+            let is_half = (to - from).abs() >= 180.0 - ANGLE_INCREMENT;
+            if is_positive && is_same(counted) && (is_same(to) || is_half) {
+                *angle = Some(within);
+                continue;
+            }
+            *angle = match self.ask(Rule::Rotary, step) {
+                Some(Choice::Shortest) => *angle,
+                Some(Choice::WithinTurn) => Some(within),
+                _ => Some(counted).filter(|_| is_positive || (from - origin).abs() <= 180.0),
+            };
+        }
+    }
+
+    /// Returns whether the limits of an axis allow a position, if it has any.
+    fn is_within_limits(&self, axis: usize, position: f64) -> bool {
+        let axis = self.machine.axis(Letter::ALL[axis]);
+        axis.and_then(|axis| axis.limits).is_none_or(|[low, high]| {
+            (low - ANGLE_INCREMENT..=high + ANGLE_INCREMENT).contains(&position)
+        })
     }
 
     /// Returns the rotary joints of a solution. One that any value solves keeps its own, also if that is unknown.
@@ -202,10 +268,7 @@ impl Resolver<'_> {
             let k = axis.letter.index();
             let Some((from, to)) = self.joints[k].zip(rotary[k - 3]) else { return false };
             let other = to - 360.0_f64.copysign(to - from);
-            let is_allowed = axis.limits.is_none_or(|[low, high]| {
-                (low - ANGLE_INCREMENT..=high + ANGLE_INCREMENT).contains(&other)
-            });
-            ((to - from).abs() - 180.0).abs() <= ANGLE_INCREMENT && is_allowed
+            ((to - from).abs() - 180.0).abs() <= ANGLE_INCREMENT && self.is_within_limits(k, other)
         });
         is_half.then_some(UnknownCause::HalfTurn)
     }
