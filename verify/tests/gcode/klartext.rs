@@ -2,7 +2,7 @@
 //! that are refused, and damaged programs.
 
 use super::klartext_cycles::levels;
-use super::mutants::{Seed, read_mutants};
+use super::mutants::{Mutants, Seed, read_mutants};
 use super::survey::assert_planted_are_found;
 use crate::common::{assert_fault, is_fault};
 use rand_core::{Rng, SeedableRng};
@@ -870,5 +870,10 @@ fn mutants_end_with_steps_or_with_a_line() {
     }
     let seeds = seeds.map(|text| Seed { text, setups: &setups });
     assert_planted_are_found(&seeds, ["L M777", "TCH PROBE 0", "L X+Q1999"]);
-    read_mutants(&seeds, &PIECES, 6000, 11);
+    read_mutants(&Mutants {
+        name: "klartext",
+        seeds: &seeds,
+        pieces: &PIECES,
+        default_count: 6_000,
+    });
 }

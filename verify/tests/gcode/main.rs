@@ -5,6 +5,8 @@ mod common;
 mod compensation;
 mod expected;
 mod figures;
+#[path = "../frozen/mod.rs"]
+mod frozen;
 mod geometry;
 mod klartext;
 mod klartext_cycles;

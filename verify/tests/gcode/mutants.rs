@@ -1,12 +1,15 @@
 //! Damaged programs: the interpreter ends with steps or with an error that names a line, whatever it reads.
 
 use super::survey::assert_planted_are_found;
+use crate::frozen::Frozen;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
+use std::fmt::Write as _;
 use touchoff_verify::gcode::{
-    Choice, ControlRules, ControlSetup, Interpreter, Rule, Step, StepPath, SubprogramFile,
+    Choice, ControlRules, ControlSetup, ControlState, GcodeError, Interpreter, Rule, Step,
+    StepPath, SubprogramFile,
 };
 
 const THREE_AXES: &str = "%\nO1000 (PLATE)\nN10 G17 G21 G40 G49 G80 G90 G94 G98\nN20 G91 G28 Z0.\nN30 T1 M6\n\
@@ -219,14 +222,27 @@ pub(crate) struct Seed<'a> {
     pub(crate) setups: &'a [ControlSetup],
 }
 
-/// Reads `MUTANTS` damaged programs, or the given number, each with one of its seed's controls. Asserts that each ends with
-/// finite steps or with one of its lines.
-pub(crate) fn read_mutants(seeds: &[Seed], pieces: &[&str], default_count: u64, random_seed: u64) {
+/// Damaged programs of a language.
+pub(crate) struct Mutants<'a> {
+    /// The file of their frozen outcomes.
+    pub(crate) name: &'static str,
+    pub(crate) seeds: &'a [Seed<'a>],
+    /// What is inserted among others.
+    pub(crate) pieces: &'a [&'a str],
+    /// Their number without `MUTANTS`.
+    pub(crate) default_count: u64,
+}
+
+/// Reads `MUTANTS` damaged programs, each with one of its seed's controls. Asserts that each ends with finite steps or with one of its
+/// lines, and that they are the frozen ones.
+pub(crate) fn read_mutants(mutants: &Mutants) {
+    let Mutants { name, seeds, pieces, default_count } = *mutants;
     let count: u64 = match std::env::var("MUTANTS") {
         Ok(text) => text.parse().expect("MUTANTS is a whole number"),
         Err(_) => default_count,
     };
-    let mut random = Pcg64Mcg::seed_from_u64(random_seed);
+    let mut random = Pcg64Mcg::seed_from_u64(11);
+    let mut frozen = Frozen::new(name, 100);
     let mut random =
         |limit: usize| ((u128::from(random.next_u64()) * limit as u128) >> 64) as usize;
     let (mut whole, mut steps, mut others) = (0u64, 0u64, 0u64);
@@ -234,24 +250,34 @@ pub(crate) fn read_mutants(seeds: &[Seed], pieces: &[&str], default_count: u64, 
         let seed = &seeds[random(seeds.len())];
         let text = mutate(seed.text, pieces, &mut random);
         let lines = text.split(['\n', '\r']).count();
+        let mut outcome = String::new();
         match Interpreter::new(&text, &seed.setups[index as usize % seed.setups.len()]) {
-            Err(error) => assert!((1..=lines).contains(&error.line), "{error}\n{text}"),
+            Err(error) => {
+                write_error(&mut outcome, &error);
+                assert!((1..=lines).contains(&error.line), "{error}\n{text}");
+            }
             Ok(mut interpreter) => {
                 let mut error = None;
                 for step in interpreter.by_ref() {
                     match step {
                         Ok(step) => {
                             steps += 1;
+                            write_step(&mut outcome, &step);
                             assert_is_finite(&step, &text);
                             assert!((1..=lines).contains(&step.line), "{step:?}\n{text}");
                         }
-                        Err(fault) => error = Some(fault),
+                        Err(fault) => {
+                            write_error(&mut outcome, &fault);
+                            error = Some(fault);
+                        }
                     }
                 }
                 assert!(interpreter.next().is_none(), "steps after the end\n{text}");
                 match error {
                     None => {
-                        interpreter.notes();
+                        for note in interpreter.notes() {
+                            let _ = writeln!(outcome, "{note}");
+                        }
                         whole += 1;
                     }
                     Some(error) => {
@@ -269,11 +295,30 @@ pub(crate) fn read_mutants(seeds: &[Seed], pieces: &[&str], default_count: u64, 
                 }
             }
         }
+        frozen.add(&text, &outcome);
     }
+    frozen.assert();
     println!(
         "{count} mutants: {whole} read to the end, {steps} steps, {others} errors behind the first"
     );
     assert!(whole > 0 && whole < count);
+}
+
+/// Writes what a motion is to the check.
+fn write_step(out: &mut String, step: &Step) {
+    let Step { start, end, commanded, path, tool_vector, alignment, spindle, state, .. } = step;
+    let flags = [step.rapid, step.absolute, step.is_homeward, step.is_return];
+    let block = (step.line, step.within.map(|within| (within.file, within.line)));
+    let _ = writeln!(out, "{block:?} {flags:?} {start:.6?} {end:.6?} {commanded:?} {path:.6?}");
+    let _ = writeln!(out, "{tool_vector:.6?} {:?} {alignment:?} {spindle:?}", step.shortest);
+    let ControlState { tool, length, work_offset, origin, shift, tcp, rotation, .. } = &**state;
+    let _ = writeln!(out, "{tool:?} {length:.6?} {work_offset:?} {origin:.6?} {shift:.6?} {tcp:?}");
+    let turn = state.origin_rotation;
+    let _ = writeln!(out, "{rotation:.6?} {turn:.6} {:?} {}", state.orientation, state.shorter_way);
+}
+
+fn write_error(out: &mut String, error: &GcodeError) {
+    let _ = writeln!(out, "{} {error}", error.code());
 }
 
 fn assert_is_finite(step: &Step, text: &str) {
@@ -292,5 +337,5 @@ fn mutants_end_with_steps_or_with_a_line() {
     let seeds: Vec<Seed> =
         SEEDS.iter().zip(&setups).map(|(&(text, _), setups)| Seed { text, setups }).collect();
     assert_planted_are_found(&seeds, ["M777", "G778", "G10.9"]);
-    read_mutants(&seeds, &PIECES, 5_000, 7);
+    read_mutants(&Mutants { name: "iso", seeds: &seeds, pieces: &PIECES, default_count: 5_000 });
 }

@@ -1,6 +1,6 @@
 //! Native programs of Sinumerik: the same motions written in ISO words, closed forms, refusals, mutants, and a long loop.
 
-use super::mutants::{Seed, read_mutants};
+use super::mutants::{Mutants, Seed, read_mutants};
 use super::survey::assert_planted_are_found;
 use crate::common;
 use crate::common::assert_fault;
@@ -539,7 +539,12 @@ fn mutants_end_with_steps_or_with_a_line() {
     let setups = [ControlSetup { max_repeated: 10_000, ..setup() }];
     let seeds = seeds.each_ref().map(|text| Seed { text, setups: &setups });
     assert_planted_are_found(&seeds, ["M777", "WAITM(1)", "X=R99"]);
-    read_mutants(&seeds, &PIECES, 1_500, 11);
+    read_mutants(&Mutants {
+        name: "sinumerik",
+        seeds: &seeds,
+        pieces: &PIECES,
+        default_count: 1_500,
+    });
 }
 
 /// A survey comes out of calls that are too deep, with the variables of the main program alone.

@@ -3,6 +3,8 @@
 
 mod bodies;
 mod cases;
+#[path = "../frozen/mod.rs"]
+mod frozen;
 mod joints;
 mod machines;
 mod oracle;

@@ -7,6 +7,7 @@ mod meaning;
 mod text;
 mod truth;
 
+use crate::frozen::Frozen;
 use crate::oracle::{Mounted, Random};
 use draw::draw;
 use kinematics::Machine;
@@ -381,6 +382,7 @@ fn programs() -> usize {
 #[test]
 fn no_program_that_collides_is_clean() {
     let mut counts = LANGUAGES.map(|_| Counts::default());
+    let mut frozen = Frozen::new("programs", 20);
     for seed in 1..=programs() {
         let case = Case::draw(&mut Random::new(seed as u64));
         let played = case.play();
@@ -388,6 +390,7 @@ fn no_program_that_collides_is_clean() {
         let checked = case.check(&played.text);
         let language = LANGUAGES.iter().position(|language| *language == case.language);
         counts[language.expect("a language")].add(checked.outcome, is_colliding);
+        frozen.add(&played.text, &format!("{:?}\n{}", checked.outcome, checked.text));
         if checked.outcome == Outcome::Clean && is_colliding {
             panic!("{seed} collides and is clean:\n{}", case.reduced(Case::is_missed));
         }
@@ -395,6 +398,7 @@ fn no_program_that_collides_is_clean() {
             panic!("{seed} is free and has findings:\n{}", case.reduced(Case::is_found_in_vain));
         }
     }
+    frozen.assert();
     for (language, count) in LANGUAGES.iter().zip(&counts) {
         println!("{language:?}: {count:?}");
     }
