@@ -384,10 +384,8 @@ impl JobFile {
         let beside = |path: PathBuf| folder.join(path);
         let (mut entries, mut tool_names) = (BTreeMap::new(), BTreeSet::new());
         for (number, mut entry) in job.tool {
-            let number = number
-                .trim_start_matches(['T', 't'])
-                .parse::<u32>()
-                .map_err(|_| refused(JobFileFault::ToolNumber { number: number.clone() }))?;
+            let number = whole_number(number.strip_prefix(['T', 't']).unwrap_or(&number))
+                .ok_or_else(|| refused(JobFileFault::ToolNumber { number: number.clone() }))?;
             if let Some(tool) = entry.tool.as_mut().filter(|tool| has_ending(tool, "tool")) {
                 *tool = folder.join(&*tool);
             }
@@ -642,7 +640,7 @@ fn radius_offsets(
     let mut offsets: BTreeMap<u32, f64> = of_tools.collect();
     for (name, radius) in named {
         let digits = name.strip_prefix(['D', 'd']).unwrap_or_default();
-        let Some(number) = digits.parse::<u32>().ok().filter(|number| *number > 0) else {
+        let Some(number) = whole_number(digits).filter(|number| *number > 0) else {
             return Err(JobFileFault::RadiusOffset { name: name.clone() });
         };
         if offsets.insert(number, *radius).is_some() {
@@ -658,15 +656,24 @@ fn radius_offsets(
 /// Returns the numbers of work offsets, from 1 for G54, by those of presets.
 ///
 /// # Errors
-/// If a preset is no whole number, or stands for no work offset.
+/// If a preset is no whole number, stands for no work offset, or is given twice (`1` and `01`).
 fn presets(named: &BTreeMap<String, String>) -> Result<BTreeMap<u32, u8>, JobFileFault> {
-    let found = named.iter().map(|(preset, offset)| {
+    let mut offsets = BTreeMap::new();
+    for (preset, offset) in named {
         let known = (1..).zip(WORK_OFFSETS).find(|(_, known)| known.eq_ignore_ascii_case(offset));
-        let number = preset.parse().ok();
-        let found = number.zip(known).map(|(number, (index, _))| (number, index));
-        found.ok_or_else(|| JobFileFault::Preset { preset: preset.clone() })
-    });
-    found.collect()
+        let of_both = whole_number(preset).zip(known);
+        let is_new =
+            of_both.is_some_and(|(number, (index, _))| offsets.insert(number, index).is_none());
+        if !is_new {
+            return Err(JobFileFault::Preset { preset: preset.clone() });
+        }
+    }
+    Ok(offsets)
+}
+
+/// Returns the number that digits write, without a sign.
+fn whole_number(digits: &str) -> Option<u32> {
+    digits.bytes().all(|byte| byte.is_ascii_digit()).then(|| digits.parse().ok()).flatten()
 }
 
 /// The origins of work offsets.
@@ -708,12 +715,11 @@ fn work_offsets(named: &BTreeMap<String, Vec<f64>>) -> Result<Origins, JobError>
 /// `G507` to `G599` of Sinumerik.
 fn additional_offset(name: &str) -> Option<u16> {
     let name = name.to_ascii_uppercase();
-    let number = |text: &str| text.parse::<u32>().ok();
     let found = match name.split_once('P') {
         Some((code, index)) => {
-            number(index.trim()).filter(|_| matches!(code.trim(), "G54.1" | "G154"))
+            whole_number(index.trim()).filter(|_| matches!(code.trim(), "G54.1" | "G154"))
         }
-        None => match number(name.strip_prefix('G')?)? {
+        None => match whole_number(name.strip_prefix('G')?)? {
             code @ 110..=129 => Some(code - WorkOffset::FIRST_OF_HAAS + 1),
             code @ 507..=599 => Some(code - WorkOffset::FIRST_OF_SINUMERIK + 1),
             _ => None,

@@ -637,9 +637,9 @@ faults! {
             /// The number.
             number: u32,
         },
-        /// A preset without a number, or that stands for no work offset.
+        /// A preset without a number, that stands for no work offset, or that is given twice.
         #[code = J0212]
-        #[error("preset `{preset}`: write its number and a work offset, `2 = \"G55\"`")]
+        #[error("preset `{preset}`: write its number and a work offset, `2 = \"G55\"`, once")]
         Preset {
             /// The given key.
             preset: String,
