@@ -2,7 +2,7 @@
 
 use crate::arguments::{ParamArguments, ToolArguments};
 use crate::failure::Failure;
-use crate::output::{show, show_lines};
+use crate::output::{extension, show, show_lines};
 use std::ffi::OsStr;
 use std::path::Path;
 use std::sync::Arc;
@@ -43,7 +43,7 @@ impl LoadedTool {
             let tool = load(&in_library(name, library, params, libraries, true)?, params)?;
             return Ok(LoadedTool::File(Box::new(tool)));
         }
-        if Path::new(name).extension().is_some_and(|extension| extension == "tool") {
+        if extension(Path::new(name)).as_deref() == Some("tool") {
             return Ok(LoadedTool::File(Box::new(load_file(Path::new(name), params)?)));
         }
         let tool = built_in(&name.to_string_lossy(), params.root())?;
@@ -82,7 +82,7 @@ pub(crate) fn compile_named(
         let source = in_library(name, library, params, libraries, false)?;
         return Ok(compile_source(&source, params));
     }
-    if Path::new(name).extension().is_some_and(|extension| extension == "tool") {
+    if extension(Path::new(name)).as_deref() == Some("tool") {
         return Ok(compile_source(&read_source(Path::new(name), params)?, params));
     }
     let SourceFiles { file, text, mounted } = source_files(&name.to_string_lossy())?;
@@ -154,7 +154,7 @@ fn built_in(name: &str, root: Option<&Path>) -> Result<&'static dyn Tool, Failur
         // A longer name has room for more slips.
         let near = near.filter(|(distance, _)| *distance <= 1 + name.len() / 4);
         let is_file = |file: &Path| file.is_file() && root.is_none_or(|root| is_within(file, root));
-        let is_tool_file = Path::new(name).extension().is_some_and(|ending| ending == "tool");
+        let is_tool_file = extension(Path::new(name)).as_deref() == Some("tool");
         let hint = if is_tool_file {
             "`touchoff tools` lists them; this command takes no files".to_owned()
         } else if Path::new(name).components().count() == 1 && is_file(Path::new(name)) {

@@ -67,8 +67,17 @@ fn read_geometry(part: &Path, unit: Unit) -> Result<Geometry, Failure> {
 }
 
 /// Prints the findings about a mesh.
-pub(crate) fn print_findings(file: &Path, mesh: &Mesh) {
+fn print_findings(file: &Path, mesh: &Mesh) {
     for finding in mesh.diagnostics().findings() {
+        message!("{}: {finding}", file.display());
+    }
+}
+
+/// Prints the findings about a mesh of a job: those of a mesh without irregularities if `verbose` is set.
+pub(crate) fn print_irregularities(file: &Path, mesh: &Mesh, verbose: bool) {
+    let findings = mesh.diagnostics().findings();
+    // The first says what kind of mesh it is.
+    for finding in findings.iter().filter(|_| verbose || findings.len() > 1) {
         message!("{}: {finding}", file.display());
     }
 }

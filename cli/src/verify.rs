@@ -32,8 +32,9 @@ const MAX_LINES: usize = 1_000;
 /// A job and the files that it names, read.
 pub(crate) type Inputs = JobInputs<LoadedTool>;
 
-/// Reads program, tools, part, fixtures and stock of a job, and prints what is noteworthy about them. `outputs` are the files
-/// that the command writes, beside those of the job; `other_inputs` are the job's own file and what else the command reads.
+/// Reads program, tools, part, fixtures and stock of a job, and prints what is noteworthy about them, and all meshes if `verbose` is set.
+/// `outputs` are the files that the command writes, beside those of the job; `other_inputs` are the job's own file and what else the
+/// command reads.
 ///
 /// # Errors
 /// If one of them cannot be read, or they do not fit, or if an output is an input.
@@ -41,6 +42,7 @@ pub(crate) fn read(
     file: JobFile,
     outputs: &[&Path],
     other_inputs: &[&Path],
+    verbose: bool,
 ) -> Result<Inputs, Failure> {
     let refuse = |file: &JobFile, inputs: Vec<(String, &Path)>| {
         let outputs = outputs.iter().copied().chain(file.outputs().map(|(_, file)| file));
@@ -63,14 +65,14 @@ pub(crate) fn read(
     }
     for body in &inputs.bodies {
         if let Some(file) = &body.file {
-            part::print_findings(file, &body.mesh);
+            part::print_irregularities(file, &body.mesh, verbose);
         }
     }
     let entry = inputs.file.stock.as_ref().and_then(|entry| entry.mesh.as_ref());
     if let (Some(file), Some(JobStock { shape: StockShape::Mesh(mesh), .. })) =
         (entry, &inputs.stock)
     {
-        part::print_findings(file, mesh);
+        part::print_irregularities(file, mesh, verbose);
     }
     Ok(inputs)
 }
@@ -181,10 +183,12 @@ pub(crate) fn check<'a>(job: &'a Job<'_>, json: bool) -> Result<JobReport<'a>, F
 /// Checks a program, and returns the exit status.
 pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure> {
     let Verify { job, part, check: options, sarif } = arguments;
+    let verbose = options.verbose;
     let file = job_file(job.clone(), part, options)?;
-    let inputs = read(file, sarif.as_deref().as_slice(), job.as_deref().as_slice())?;
+    let inputs = read(file, sarif.as_deref().as_slice(), job.as_deref().as_slice(), verbose)?;
     let job = inputs.job();
     let report = check(&job, json)?;
+    print_verdict(&report);
     let mut out = Output::rows();
     for (count, finding) in report.findings().iter().enumerate() {
         if json {
@@ -205,7 +209,7 @@ pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure>
     if !json && left_out > 0 {
         message!("{left_out} more findings are left out: `--json` and `--sarif` list all");
     }
-    print(&inputs, &report)?;
+    print(&inputs, &report, verbose)?;
     if let Some(file) = sarif {
         write_file(&file, serde_json::to_vec_pretty(&report.sarif())?)?;
     }
@@ -231,28 +235,45 @@ fn style(severity: Severity) -> Style {
     color.on_default().bold()
 }
 
-/// Prints the reasons for which there is no verdict, then the summary, and writes what the job asks for of the stock.
+/// Prints the verdict with the numbers of findings, in a line.
+pub(crate) fn print_verdict(report: &JobReport<'_>) {
+    let count =
+        |severity| report.findings().iter().filter(|found| found.severity == severity).count();
+    let counts = [
+        (count(Severity::Violation), "violation"),
+        (count(Severity::Undecided), "undecided finding"),
+        (count(Severity::Remark), "remark"),
+    ];
+    let counts = counts.into_iter().filter(|(count, _)| *count > 0);
+    let counts = counts.map(|(count, noun)| match count {
+        1 => format!("1 {noun}"),
+        _ => format!("{count} {noun}s"),
+    });
+    let counts = counts.collect::<Vec<_>>().join(", ");
+    let separator = if counts.is_empty() { "" } else { "; " };
+    match report.verdict() {
+        Verdict::Findings => message!("findings: {counts}"),
+        Verdict::Clean if report.gaps.is_empty() => {
+            message!("no findings: {}{separator}{counts}", Verdict::Clean);
+        }
+        Verdict::Clean => {
+            message!(
+                "no findings: {}, but for what is not checked{separator}{counts}",
+                Verdict::Clean
+            );
+        }
+        Verdict::None => message!("{}{separator}{counts}", Verdict::None),
+    }
+}
+
+/// Prints the reasons for which there is no verdict, what was not checked, and, if `verbose` is set, what was read and how near the tools
+/// came; then writes what the job asks for of the stock.
 ///
 /// # Errors
 /// If a file cannot be written.
-pub(crate) fn print(inputs: &Inputs, report: &JobReport<'_>) -> Result<(), Failure> {
+pub(crate) fn print(inputs: &Inputs, report: &JobReport<'_>, verbose: bool) -> Result<(), Failure> {
     for reason in report.refusals() {
         message!("not verified: {reason} [{}]", reason.code());
-    }
-    let unit = inputs.file.unit;
-    // Once per tool: at every body and in every reading it goes the same way.
-    for pair in report.tools_at_part() {
-        print_approach(&pair.report, unit);
-    }
-    match &inputs.program {
-        Program::Locations(programs) => print_ignored(programs),
-        Program::Machine(readings) => {
-            let stated = inputs.program.machine().map_or("", Machine::name);
-            match readings.len() {
-                1 => message!("machine: {stated}"),
-                count => message!("machine: {stated}, in {count} readings of the program"),
-            }
-        }
     }
     // Gaps that are open and not accepted are among the refusals.
     for gap in report.gaps.iter().filter(|gap| match gap.weight {
@@ -262,16 +283,37 @@ pub(crate) fn print(inputs: &Inputs, report: &JobReport<'_>) -> Result<(), Failu
     }) {
         message!("not checked: {gap} [{}]", gap.code());
     }
-    for summary in report.summaries() {
-        message!("{summary}");
+    if report.is_surface_only() {
+        message!("{NO_INSIDE}; only its surface was checked");
+    }
+    if let Program::Locations(programs) = &inputs.program {
+        print_ignored(programs);
+    }
+    if verbose {
+        print_summary(inputs, report);
     }
     if let (Some(cut), Some(entry)) = (report.cut(), &inputs.file.stock) {
         print_stock(cut, entry, &inputs.bodies[0].bvh, report.verdict())?;
     }
-    if report.is_surface_only() {
-        message!("{NO_INSIDE}; only its surface was checked");
-    }
     Ok(())
+}
+
+/// Prints where part and program are and how near they come, the machine, and the findings of each tool at each body.
+fn print_summary(inputs: &Inputs, report: &JobReport<'_>) {
+    // Once per tool: at every body and in every reading it goes the same way.
+    for pair in report.tools_at_part() {
+        print_approach(&pair.report, inputs.file.unit);
+    }
+    if let Program::Machine(readings) = &inputs.program {
+        let stated = inputs.program.machine().map_or("", Machine::name);
+        match readings.len() {
+            1 => message!("machine: {stated}"),
+            count => message!("machine: {stated}, in {count} readings of the program"),
+        }
+    }
+    for summary in report.summaries() {
+        message!("{summary}");
+    }
 }
 
 /// Prints what remains of the stock, and writes it as an STL file and its deviations from the part as CSV or PLY if asked to.

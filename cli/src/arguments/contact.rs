@@ -110,6 +110,10 @@ pub(crate) struct CheckArguments {
     /// the tool's diameter of the part or would fit it in another unit. Without this option, these end with status 2.
     #[arg(long)]
     pub(crate) anyway: bool,
+    /// Print what was read, too: meshes, boxes of part and program, travel, nearest approach, machine, and the findings of each tool at
+    /// each body.
+    #[arg(short, long)]
+    pub(crate) verbose: bool,
 }
 
 impl CheckArguments {

@@ -72,10 +72,11 @@ pub(crate) fn report(arguments: Report, json: bool) -> Result<ExitCode, Failure>
     }
     let (job_file, part) =
         if is_job { (Some(subject.clone()), None) } else { (None, Some(subject.clone())) };
+    let verbose = check.verbose;
     let job = verify::job_file(job_file, part, check)?;
     let other_inputs: Vec<&Path> =
         [Some(&subject), map.as_ref()].into_iter().flatten().map(|file| &**file).collect();
-    let inputs = verify::read(job, &[&output], &other_inputs)?;
+    let inputs = verify::read(job, &[&output], &other_inputs, verbose)?;
     let map = match map {
         Some(file) => Some((PostureMap::read(&file)?, file)),
         None => None,
@@ -88,7 +89,8 @@ pub(crate) fn report(arguments: Report, json: bool) -> Result<ExitCode, Failure>
     let job = inputs.job();
     let checked = verify::check(&job, json)?;
     times.push(("proving the motions, and cutting the stock", check.elapsed()));
-    verify::print(&inputs, &checked)?;
+    verify::print_verdict(&checked);
+    verify::print(&inputs, &checked, verbose)?;
 
     let progress = Progress::spinner("writing the report", json);
     let job_file = is_job.then_some(&*subject);

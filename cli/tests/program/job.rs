@@ -145,7 +145,7 @@ fn the_job_of_the_page_becomes_clean() {
     assert_eq!(sarif["version"], "2.1.0");
     let results = sarif["runs"][0]["results"].as_array().expect("results");
     assert_eq!(results.len(), found.len());
-    let clean = job(&bench, &text.replace("stickout = 20", "stickout = 35"), &[]);
+    let clean = job(&bench, &text.replace("stickout = 20", "stickout = 35"), &["-v"]);
     assert_eq!(clean.status.code(), Some(0), "{}{}", stdout(&clean), stderr(&clean));
     assert!(stderr(&clean).contains("T2 at the vise: no findings"), "{}", stderr(&clean));
 }

@@ -81,7 +81,7 @@ fn a_spindle_head_touches_the_table() {
     let (_, printed) = printed.trim_end().split_once("slot.nc").expect("the file");
     assert!(page.contains(&format!("slot.nc{printed}")), "{printed}");
 
-    let longer = verify(&bench, &text.replace("length = 95", "length = 104"), &[]);
+    let longer = verify(&bench, &text.replace("length = 95", "length = 104"), &["-v"]);
     assert_eq!(longer.status.code(), Some(0), "{}{}", stdout(&longer), stderr(&longer));
     assert!(stderr(&longer).contains("the spindle head at the table: no findings in 5 motions"));
 

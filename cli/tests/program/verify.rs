@@ -31,13 +31,20 @@ fn findings_are_lines_as_compilers_print_them() {
     );
     assert!(line.contains(" of the motion from line 4") && line.ends_with(" [V0101]"), "{line}");
     let said = stderr(&output);
+    assert!(said.starts_with("findings: 1 violation\n"), "{said}");
+    let said = stderr(&verify(&bench, "block.apt", "D2Ball", &["--verbose"]));
     assert!(
         said.contains("1 finding in 3 motions: ball on 1 motion (deepest 0.5000 mm, line 5)"),
         "{said}"
     );
     let clean = verify(&bench, "block.apt", "D2Ball", &["--tolerance", "0.5"]);
     assert_eq!((clean.status.code(), clean.stdout.len()), (Some(0), 0), "{}", stderr(&clean));
-    assert!(stderr(&clean).contains("no findings in 3 motions"), "{}", stderr(&clean));
+    assert!(
+        stderr(&clean)
+            .starts_with("no findings: every motion is proved to stay within its limits\n"),
+        "{}",
+        stderr(&clean)
+    );
     let allowed = verify(&bench, "block.apt", "D2Ball", &["--allow", "ball=inf"]);
     assert_eq!(allowed.status.code(), Some(0), "{}", stdout(&allowed));
 }
@@ -218,7 +225,7 @@ fn a_program_that_never_comes_near_is_not_verified() {
         PROGRAM.replace("GOTO/-9", &format!("GOTO/{x}")).replace("GOTO/9", &format!("GOTO/{x}"))
     };
     bench.write("far.apt", far(1000.0));
-    let output = verify(&bench, "far.apt", "D2Ball", &[]);
+    let output = verify(&bench, "far.apt", "D2Ball", &["-v"]);
     let said = stderr(&output);
     assert_eq!(output.status.code(), Some(2), "{said}");
     for words in [
@@ -234,7 +241,7 @@ fn a_program_that_never_comes_near_is_not_verified() {
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     // Both ends are far away, but the motion between them is not.
     bench.write("across.csv", "-900,0,0.5,0,0,1\n900,0,0.5,0,0,1\n");
-    let output = verify(&bench, "across.csv", "D2Ball", &[]);
+    let output = verify(&bench, "across.csv", "D2Ball", &["-v"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert!(stderr(&output).contains("nearest approach: 0."), "{}", stderr(&output));
     // No depth can be large enough to be a finding.
