@@ -14,7 +14,7 @@ pub struct SubprogramFile {
 
 impl SubprogramFile {
     /// Returns the name without the part after its last point.
-    pub(super) fn stem(&self) -> &str {
+    pub(crate) fn stem(&self) -> &str {
         self.name.rsplit_once('.').map_or(&self.name, |(stem, _)| stem)
     }
 }

@@ -415,11 +415,13 @@ pub(super) fn read_subprograms(files: &[PathBuf]) -> Result<Vec<SubprogramFile>,
     let mut subprograms: Vec<SubprogramFile> = Vec::new();
     for file in files {
         let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        if subprograms.iter().any(|known| known.name.eq_ignore_ascii_case(&name)) {
-            return Err(JobError::SecondSubprogram { name });
+        let added = SubprogramFile { name, text: read_text(file)?.into() };
+        // A call can leave out the ending.
+        let stem = added.stem();
+        if subprograms.iter().any(|known| known.stem().eq_ignore_ascii_case(stem)) {
+            return Err(JobError::SecondSubprogram { name: stem.to_owned() });
         }
-        let text = read_text(file)?.into();
-        subprograms.push(SubprogramFile { name, text });
+        subprograms.push(added);
     }
     Ok(subprograms)
 }

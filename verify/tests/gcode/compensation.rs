@@ -771,3 +771,19 @@ fn random_lines_end_at_the_closed_form_of_their_corners() {
     );
     assert!(worst < 1e-9 && followed > 2_000 && refused > 2_000);
 }
+
+/// LinuxCNC knows the ends of an arc and its direction: from a point beyond its end it turns all around, and on a full circle by nothing.
+#[test]
+fn arcs_beyond_their_end_are_refused_on_linuxcnc() {
+    let short =
+        "G41 D7 X10 Y-10\nX30\nG3 X30.03924 Y-9.9986 I-0.78524 J22.48629\nG1 X50.02581 Y-9.26572";
+    let full = "G41 D7 X20 Y9.65079\nX30 Y10\nG3 X30 Y10 I0 J10";
+    for (program, radius) in [(short, 2.5), (full, 5.0)] {
+        let rules = ControlRules::named("linuxcnc").expect("a control");
+        let radius_offsets = [(7, radius)].into();
+        let setup = ControlSetup { rules, radius_offsets, ..arcs() };
+        let program = format!("G21 G90 G1 X-10 Y-20 F500\n{program}\nG40 G1 X90 Y-30");
+        let error = run(&program, &setup).expect_err(&program);
+        assert!(is_fault(&error, "P0120 an arc"), "{program}\n{error}");
+    }
+}

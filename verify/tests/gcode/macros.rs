@@ -563,3 +563,63 @@ fn positions_that_a_control_reports_otherwise_are_not_known() {
     let error = read(text, &setup).expect_err("a height");
     assert!(is_fault(&error, "P0211 #5003"), "{error}");
 }
+
+/// Sines and angles have other last digits on each control: what these decide is refused.
+#[test]
+fn ties_of_sines_are_refused() {
+    for text in [
+        "x[fix[sin[30]*10]]",
+        "x[fix[cos[90]]]",
+        "x[fup[sin[360]]]",
+        "x[sin[180] mod 10]",
+        "x[sin[180] and 1]",
+        "o1 if [cos[60] lt 0.5]\no1 endif",
+        "o1 if [tan[45] gt 1]\no1 endif",
+        "o1 if [acos[0.5] gt 60]\no1 endif",
+        "o1 if [sin[180]]\no1 endif",
+    ] {
+        let program = format!("g21 g90 g0\n{text}\nm2\n");
+        let error = read(&program, &setup(Choice::Rs274Ngc)).expect_err(text);
+        assert!(is_fault(&error, "P0206"), "{text}: {error}");
+    }
+    let iso = "G21 G90 G0\nIF [COS[60.] LT 0.5] GOTO 9\nX1.\nN9 X2.\nM30\n";
+    let error = read(iso, &setup(Choice::Iso)).expect_err(iso);
+    assert!(is_fault(&error, "P0206 LT"), "{error}");
+    // Sums are the same ones there, and so are numbers that are equal within the tolerance.
+    let tenths = "g21 g90 g0\n#1=0\no1 while [#1 lt 1]\n#1=[#1+0.1]\no1 endwhile\nx[#1] y[cos[0] eq 1]\nm2\n";
+    let tenths = tenths.replace("y[cos[0] eq 1]", "y0");
+    let last = ends(&tenths, Choice::Rs274Ngc);
+    assert!((last[0][0] - 1.1).abs() < 1e-9, "{last:?}");
+}
+
+/// Behind a semicolon that ends a block, what is next is not decided by the line.
+#[test]
+fn blocks_behind_a_decision_in_one_line_are_refused() {
+    let rules = ControlRules::named("haas").expect("a control");
+    let setup = ControlSetup { rules, ..setup(Choice::Iso) };
+    for text in [
+        "GOTO 10 ; X3.\nN10 X8.",
+        "IF [1 EQ 1] GOTO 10 ; X3.\nN10 X8.",
+        "#1=5\nWHILE [#1 LT 3] DO1 ; X3.\nEND1",
+        "G65 P9001 ; X3.",
+        "G66 P9001\nX1. ; X3.\nG67",
+    ] {
+        let program = format!("G21 G90 G0\n{text}\nX9.\nM30\nO9001\nX7.\nM99\n");
+        let error = read(&program, &setup).expect_err(text);
+        assert!(is_fault(&error, "P0120 `;`"), "{text}: {error}");
+    }
+    for text in ["GOTO 10\nX3. ; N10 X8.\nN10 X4.", "GOTO 10\n(HERE) N10 X8.\nN10 X4."] {
+        let error = read(&format!("G21 G90 G0\n{text}\nM30\n"), &setup).expect_err(text);
+        assert!(is_fault(&error, "P0130"), "{text}: {error}");
+    }
+}
+
+/// A number between two origins is no variable that the control knows.
+#[test]
+fn variables_beyond_the_work_offsets_are_not_known() {
+    for number in [10_321, 10_325, 10_340, 15_445] {
+        let program = format!("G21 G90\nG0 X#{number}\nM30\n");
+        let error = read(&program, &setup(Choice::Iso)).expect_err(&program);
+        assert!(is_fault(&error, "P0211"), "{error}");
+    }
+}

@@ -7,7 +7,7 @@ use crate::common::assert_fault;
 use std::collections::BTreeMap;
 use touchoff_verify::gcode::{
     Choice, ControlRules, ControlSetup, GcodeError, Interpreter, LengthOffset, NoteKind, Position,
-    Rotation, Rule, Spindle, Step, StepPath, Tcp, WorkOffset, read,
+    Rotation, Rule, Spindle, Step, StepPath, SubprogramFile, Tcp, WorkOffset, read,
 };
 
 /// A control that stands at 0, with work offsets that differ.
@@ -636,4 +636,50 @@ fn corners_are_rounded_or_chamfered() {
     let end = found[2].end;
     let expected = [40.0 - 4.0 * 0.5, 4.0 * 0.75f64.sqrt()];
     assert!((0..2).all(|k| (end[k].expect("a coordinate") - expected[k]).abs() < 1e-11), "{end:?}");
+}
+
+/// A line can have several conditions, of which the first that holds decides.
+#[test]
+fn conditions_of_one_line_are_tried_in_turn() {
+    for (value, expected) in [("1", &[2.0, 3.0][..]), ("2", &[3.0]), ("3", &[1.0, 2.0, 3.0])] {
+        let text = format!(
+            "DEF REAL AA={value}\nG0 Y5\nIF AA==1 GOTOF A1 IF AA==2 GOTOF B1\nX1\nA1: X2\nB1: X3\nM30\n"
+        );
+        let found: Vec<f64> = steps(&text).iter().skip(1).filter_map(|step| step.end[0]).collect();
+        assert_eq!(found, expected, "{text}");
+    }
+    let rest = "DEF REAL AA=3\nIF AA==1 GOTOF A1 FOOBAR %%%\nA1: X2\nM30\n";
+    assert!(execute(rest).is_err());
+}
+
+/// What the machine or its builder decides, or a folder of the control, is not guessed.
+#[test]
+fn what_depends_on_the_machine_is_refused() {
+    for (text, line, pattern) in [
+        ("DEF REAL AA=1\nG0 X1\nGOTOS\nM30\n", 3, "P0115 GOTOS"),
+        ("DEF REAL AA=ROUNDUP(-0.5)\nM30\n", 1, "P0120 ROUNDUP"),
+        ("T1 D1\nG0 X5\nMCALL CYCLE81(10,0,2,-5)\nF200\nM30\n", 4, "P0120 F, S"),
+        ("T1 D1\nG0 X5\nMCALL CYCLE81(10,0,2,-5)\nG1\nM30\n", 4, "P0120 F, S"),
+    ] {
+        let error = execute(text).expect_err(text);
+        assert_fault(text, &error, line, pattern);
+    }
+}
+
+/// A program of the user is found before a cycle of its name, and one that two files have is refused.
+#[test]
+fn programs_of_the_user_come_before_cycles() {
+    let file = |name: &str, text: &str| SubprogramFile { name: name.to_owned(), text: text.into() };
+    let own = file("CYCLE81.SPF", "PROC CYCLE81(REAL AA,REAL BB,REAL CC,REAL DD)\nX7\nM17\n");
+    let text = "DEF REAL AA=1\nG0 X5\nCYCLE81(10,0,2,-5)\nM30\n";
+    let setup = ControlSetup { subprograms: vec![own], ..setup() };
+    let found = common::steps(text, &setup);
+    assert_eq!(found.last().and_then(|step| step.end[0]), Some(7.0));
+    let modal = text.replace("CYCLE81", "MCALL CYCLE81");
+    assert!(common::execute(&modal, &setup).is_err());
+    let both =
+        vec![file("SUBX.SPF", "X1\nM17\nPROC SUBY\nX2\nM17\n"), file("SUBY.SPF", "X3\nM17\n")];
+    let setup = ControlSetup { subprograms: both, ..setup };
+    let text = "DEF REAL AA=1\nG0 X5\nSUBY\nM30\n";
+    assert_fault(text, &common::execute(text, &setup).expect_err("two"), 3, "P0143 SUBY");
 }

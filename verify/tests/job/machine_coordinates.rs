@@ -371,3 +371,18 @@ fn lengths_across_the_plane_and_retracts_beside_the_tool_are_refused() {
          G0 X0 Y10 Z10\nCYCLE800(5,\"TABLE\",0,57,0,0,0,-30,0,0,0,0,0,-1,100)\nG0 X0 Y0 Z150";
     scene(tilted).gives(SIEMENS, NONE, &["P0120 12"]);
 }
+
+/// A change to the tool in the spindle leaves Z where it is: machine coordinates of other axes are no way home from there.
+#[test]
+fn a_height_that_a_tool_change_leaves_is_no_way_home() {
+    let text = |block: &str| {
+        klartext(&format!(
+            "L Z+0 R0 FMAX M91\nL X+0 Y+0 R0 FMAX M91\nL A+0 C+0 R0 FMAX M3\nL X+0 Y+0 FMAX\nL Z+100 FMAX\nL Z+1 F500\nL Z+100 FMAX\nL X+60 FMAX\nL Z-10 F500\nTOOL CALL 1 Z S1000\nM3\n{block}\nL Z+0 R0 FMAX M91"
+        ))
+    };
+    let machine = TRUNNION.replace("tool_change = { Z = 0 }", "");
+    let scene = |block: &str| scene("a.h", &text(block), &machine, G54);
+    scene("L X-60 R0 FMAX M91").gives(HEIDENHAIN, NONE, &["V0403 14"]);
+    scene("L X-60 Z+0 R0 FMAX M91").gives(HEIDENHAIN, NONE, &["V0403 14"]);
+    scene("").gives(HEIDENHAIN, CLEAN, &[]);
+}

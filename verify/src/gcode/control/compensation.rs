@@ -482,7 +482,7 @@ impl Control {
             }
         };
         held.check_room()?;
-        let place = self.leave(compensation, &held, &corner);
+        let place = self.leave(compensation, &held, &corner)?;
         if let Some(leg) = corner.after {
             self.add_leg(compensation.plane, &step, step.start, place, leg);
         }
@@ -514,7 +514,7 @@ impl Control {
             }
         }
         held.check_room()?;
-        let place = self.leave(&mut compensation, &held, &corner);
+        let place = self.leave(&mut compensation, &held, &corner)?;
         if let Some(leg) = corner.after {
             self.add_leg(compensation.plane, &step, step.start, place, leg);
         }
@@ -533,7 +533,7 @@ impl Control {
         if let Some(held) = compensation.held.take() {
             held.check_room()?;
             let place = held.contour.beside(1);
-            self.leave(&mut compensation, &held, &offset::at(place));
+            self.leave(&mut compensation, &held, &offset::at(place))?;
             for (axis, value) in compensation.plane.axes().into_iter().zip([place.x, place.y]) {
                 self.position[axis] = Some(value);
             }
@@ -579,8 +579,23 @@ impl Control {
     }
 
     /// Adds the motion that was held, what the corner adds to it, and the motions across the plane after it. Returns the place of these.
-    fn leave(&mut self, compensation: &mut Compensation, held: &Held, corner: &Corner) -> Vector {
+    ///
+    /// # Errors
+    /// If LinuxCNC takes an arc the other way: it knows the ends and the direction (`convert_arc_comp2`), and at a corner that is none to it
+    /// the start may be beyond the end.
+    fn leave(
+        &mut self,
+        compensation: &mut Compensation,
+        held: &Held,
+        corner: &Corner,
+    ) -> Result<Vector, GcodeFault> {
         let plane = compensation.plane;
+        if self.stated(Rule::Dialect) == Some(Choice::Rs274Ngc)
+            && !held.contour.keeps_direction(held.from, corner.end)
+        {
+            let condition = "it begins at a corner of less than 0.05 radians under cutter compensation, beyond its own end";
+            return Err(combination("an arc", condition, "write it as a tangent, or longer"));
+        }
         let mut step = held.step.clone();
         step.path = step_path(plane, held.contour.path(held.from, corner.end));
         move_in_plane(&mut step, plane, [held.from, corner.end]);
@@ -596,7 +611,7 @@ impl Control {
             }
             self.pending.push_back(step);
         }
-        place
+        Ok(place)
     }
 
     /// Adds a path of a corner, which belongs to the block of `step`. The axes that are not in the plane stay at `others`.

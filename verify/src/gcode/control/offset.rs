@@ -177,6 +177,16 @@ impl Contour {
         Shape::Arc { centre, sweep: turn + TAU * ((rest - turn) / TAU).round() }
     }
 
+    /// Returns whether an arc turns from one point of the offset curve to another as a control does that knows its direction alone, and its
+    /// full turns: by more than nothing, and by a full turn at most beyond these.
+    pub(super) fn keeps_direction(&self, from: Vector, to: Vector) -> bool {
+        let Shape::Arc { sweep: programmed, .. } = self.shape else { return true };
+        let Shape::Arc { sweep, .. } = self.path(from, to) else { return true };
+        let full_turns = TAU * ((programmed.abs() - ROUNDING) / TAU).floor().max(0.0);
+        let rest = sweep * programmed.signum() - full_turns;
+        rest > ROUNDING && rest < TAU + ROUNDING
+    }
+
     /// Returns the curvature of the programmed motion at its start (0) or its end (1), positive to the left.
     fn curvature(&self, end: usize) -> f64 {
         match self.shape {

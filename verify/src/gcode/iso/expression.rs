@@ -22,6 +22,8 @@ const LINUXCNC_EQUAL: f64 = 1e-6;
 const LINUXCNC_EQUAL_BEFORE: f64 = 1e-4;
 /// Numbers that differ by less, relatively (and absolutely below 1), may be equal on a control that computes with 8 digits.
 const TIE: f64 = 1e-6;
+/// The same on LinuxCNC, whose sines and angles have other last digits by the processor (`sin(x * M_PIl / 180)` in `long double`).
+const LINUXCNC_TIE: f64 = 1e-12;
 
 /// A value: a number, or `None` for a vacant variable of Fanuc.
 pub(super) type Value = Option<f64>;
@@ -420,7 +422,11 @@ pub(super) fn condition(cursor: &mut Cursor, scope: &Scope) -> Result<bool, Expr
     if cursor.peek() != Some(b'[') {
         return Err(ExpressionFault::Value { shown: rest(cursor) });
     }
-    let value = agreed(cursor, scope, Rounding::Whole, |reader, cursor| reader.bracket(cursor, 0))?;
+    let value = agreed(cursor, scope, Rounding::Whole, |reader, cursor| {
+        let value = reader.bracket(cursor, 0)?;
+        reader.is_true(value.unwrap_or_default(), "a condition")?;
+        Ok(value)
+    })?;
     Ok(value.is_some_and(|value| value != 0.0))
 }
 
@@ -619,7 +625,7 @@ impl Reader<'_> {
                 finite(first.powf(second), "POW").map(Some)
             }
             (Function::Atan, None) if is_linuxcnc => lacks("ATAN without `/`"),
-            (Function::Atan, None) => Ok(Some(first.atan().to_degrees())),
+            (Function::Atan, None) => Ok(Some(inexact(first.atan().to_degrees()))),
             (Function::Pow, _) => lacks("POW"),
             (_, Some(_)) => lacks(","),
             (function, None) => self.of_one(function, first).map(Some),
@@ -628,7 +634,7 @@ impl Reader<'_> {
 
     /// Returns the angle of a direction, in degrees from -180 to 180.
     fn angle(&self, y: f64, x: f64) -> Result<f64, ExpressionFault> {
-        let angle = y.atan2(x).to_degrees();
+        let angle = inexact(y.atan2(x).to_degrees());
         match self.language {
             // From 0 to 360 or from -180 to 180, by parameter 6004.
             Language::Fanuc if angle < 0.0 => Err(ExpressionFault::Range { function: "ATAN" }),
@@ -640,26 +646,26 @@ impl Reader<'_> {
         let is_fanuc = self.language == Language::Fanuc;
         match function {
             Function::Abs => Ok(x.abs()),
-            Function::Acos => finite(x.acos().to_degrees(), "ACOS"),
+            Function::Acos => finite(inexact(x.acos().to_degrees()), "ACOS"),
             // From -90 to 90, or from 90 to 270, by parameter 6004.
             Function::Asin if is_fanuc => Err(ExpressionFault::Range { function: "ASIN" }),
-            Function::Asin => finite(x.asin().to_degrees(), "ASIN"),
-            Function::Cos => Ok(sin_cos_degrees(x).1),
-            Function::Sin => Ok(sin_cos_degrees(x).0),
+            Function::Asin => finite(inexact(x.asin().to_degrees()), "ASIN"),
+            Function::Cos => Ok(inexact(sin_cos_degrees(x).1)),
+            Function::Sin => Ok(inexact(sin_cos_degrees(x).0)),
             Function::Tan => {
                 let (sine, cosine) = sin_cos_degrees(x);
-                finite(sine / cosine, "TAN")
+                finite(inexact(sine / cosine), "TAN")
             }
             Function::Exp => finite(x.exp(), "EXP"),
             Function::Ln => finite(x.ln(), "LN"),
             Function::Sqrt => finite(x.sqrt(), "SQRT"),
             // Toward 0 and away from it on Fanuc, down and up on LinuxCNC.
             Function::Fix if is_fanuc => self.rounded(x, x.trunc(), 0.0, "FIX"),
-            Function::Fix => Ok(x.floor()),
+            Function::Fix => self.rounded(x, x.floor(), 0.0, "FIX"),
             Function::Fup if is_fanuc => {
                 self.rounded(x, if x < 0.0 { x.floor() } else { x.ceil() }, 0.0, "FUP")
             }
-            Function::Fup => Ok(x.ceil()),
+            Function::Fup => self.rounded(x, x.ceil(), 0.0, "FUP"),
             Function::Round if is_fanuc => match self.rounding {
                 Rounding::Whole => self.rounded(x, x.round(), 0.5, "ROUND"),
                 Rounding::Increment(step) => {
@@ -672,7 +678,7 @@ impl Reader<'_> {
                     Err(ExpressionFault::Operation { name: "ROUND in an argument".to_owned() })
                 }
             },
-            Function::Round => Ok(x.round()),
+            Function::Round => self.rounded(x, x.round(), 0.5, "ROUND"),
             Function::Atan | Function::Exists | Function::Pow => {
                 unreachable!("read with its arguments")
             }
@@ -688,9 +694,28 @@ impl Reader<'_> {
         operation: &'static str,
     ) -> Result<f64, ExpressionFault> {
         let distance = (x - offset) - (x - offset).round();
-        match distance != 0.0 && distance.abs() <= TIE * x.abs().max(1.0) {
+        match self.is_tie(distance, x) {
             true => Err(ExpressionFault::Tie { operation, value: x }),
             false => Ok(rounded),
+        }
+    }
+
+    /// Returns whether the sign of a difference depends on the last digits of numbers of a size.
+    fn is_tie(&self, difference: f64, size: f64) -> bool {
+        let least = match self.language {
+            Language::Fanuc => TIE,
+            Language::LinuxCnc if self.scope.variables.has_angles => LINUXCNC_TIE,
+            // Sums and products are those of IEEE 754 there, too.
+            Language::LinuxCnc => return false,
+        };
+        difference != 0.0 && difference.abs() <= least * size.abs().max(1.0)
+    }
+
+    /// Returns whether a number is not 0, unless its last digits decide that.
+    fn is_true(&self, x: f64, operation: &'static str) -> Result<bool, ExpressionFault> {
+        match self.is_tie(x, 1.0) {
+            true => Err(ExpressionFault::Tie { operation, value: x }),
+            false => Ok(x != 0.0),
         }
     }
 
@@ -717,15 +742,26 @@ impl Reader<'_> {
             Operator::Over => finite(x / y, "/"),
             Operator::Plus => finite(x + y, "+"),
             Operator::Minus => finite(x - y, "-"),
-            Operator::Modulo if is_linuxcnc => finite(x.rem_euclid(y.abs()), "MOD"),
+            Operator::Modulo if is_linuxcnc => {
+                let rest = x.rem_euclid(y.abs());
+                let is_tie = [rest, y.abs() - rest].iter().any(|rest| self.is_tie(*rest, x));
+                match is_tie {
+                    true => Err(ExpressionFault::Tie { operation: "MOD", value: x }),
+                    false => finite(rest, "MOD"),
+                }
+            }
             // Of whole numbers, with the sign of the first.
             Operator::Modulo if [x, y].iter().all(|value| value.fract() == 0.0) => {
                 finite(x % y, "MOD")
             }
             Operator::Modulo => Err(ExpressionFault::Tie { operation: "MOD", value: x }),
-            Operator::And if is_linuxcnc => truth(x != 0.0 && y != 0.0),
-            Operator::Or if is_linuxcnc => truth(x != 0.0 || y != 0.0),
-            Operator::Xor if is_linuxcnc => truth((x != 0.0) != (y != 0.0)),
+            Operator::And if is_linuxcnc => {
+                truth(self.is_true(x, "AND")? && self.is_true(y, "AND")?)
+            }
+            Operator::Or if is_linuxcnc => truth(self.is_true(x, "OR")? | self.is_true(y, "OR")?),
+            Operator::Xor if is_linuxcnc => {
+                truth(self.is_true(x, "XOR")? != self.is_true(y, "XOR")?)
+            }
             Operator::And => bits(x, y, "AND", |x, y| x & y),
             Operator::Or => bits(x, y, "OR", |x, y| x | y),
             Operator::Xor => bits(x, y, "XOR", |x, y| x ^ y),
@@ -748,13 +784,13 @@ impl Reader<'_> {
         holds: bool,
     ) -> Result<f64, ExpressionFault> {
         let difference = x - y;
+        let is_near = self.is_tie(difference, x.abs().max(y.abs()));
         let is_tie = match self.language {
-            Language::Fanuc => {
-                difference != 0.0 && difference.abs() <= TIE * x.abs().max(y.abs()).max(1.0)
-            }
+            Language::Fanuc => is_near,
+            // It is exact there, where others are equal within a tolerance.
+            Language::LinuxCnc if matches!(operation, "GT" | "LT") => is_near,
             Language::LinuxCnc => {
                 let is_decided = match operation {
-                    "GT" | "LT" => true,
                     "GE" => difference > 0.0,
                     "LE" => difference < 0.0,
                     _ => false,
@@ -782,6 +818,12 @@ fn bits(
         true => Ok(f64::from(apply(x as u32, y as u32))),
         false => Err(ExpressionFault::NotFinite { operation }),
     }
+}
+
+/// Returns a sine or an angle a few digits beside the number that it is exactly: its last digits differ between controls, so that it must
+/// not be equal to another number.
+fn inexact(value: f64) -> f64 {
+    if value == 0.0 { f64::EPSILON } else { value * (1.0 + 2.0 * f64::EPSILON) }
 }
 
 fn finite(value: f64, operation: &'static str) -> Result<f64, ExpressionFault> {

@@ -181,6 +181,10 @@ impl<'a> Source<'a> {
                 if let Some(number) = sequence_number(line) {
                     numbers.entry(number).or_default().push(place);
                 }
+                // Where a semicolon ends a block, the line has further ones, at which execution cannot begin: as if they stood twice.
+                for number in line.split(';').skip(1).filter_map(sequence_number) {
+                    numbers.entry(number).or_default().extend([place; 2]);
+                }
                 place = after;
             }
             numbers
@@ -756,13 +760,15 @@ impl<'a> Flow<'a> {
     }
 }
 
-/// Returns the number of a line that begins with N.
+/// Returns the number of a line that begins with N, or with comments and N.
 fn sequence_number(line: &str) -> Option<u32> {
-    let line = line.trim_start();
-    let line = match line.strip_prefix('/') {
-        Some(rest) => rest.trim_start_matches(|c: char| c.is_ascii_digit()).trim_start(),
-        None => line,
-    };
+    let mut line = line.trim_start();
+    if let Some(rest) = line.strip_prefix('/') {
+        line = rest.trim_start_matches(|c: char| c.is_ascii_digit()).trim_start();
+    }
+    while let Some(comment) = line.strip_prefix('(') {
+        line = comment.split_once(')')?.1.trim_start();
+    }
     let digits = line.strip_prefix(['N', 'n'])?.trim_start();
     let end = digits.find(|c: char| !c.is_ascii_digit()).unwrap_or(digits.len());
     digits[..end].parse().ok()

@@ -58,6 +58,8 @@ pub(super) struct Line {
     pub(super) ignores: bool,
     /// Set if the line has an assignment, and another value that is computed.
     pub(super) assigns_beside_value: bool,
+    /// Set if its execution has led elsewhere than to what follows: by a decision, a call, or a motion under G66.
+    pub(super) has_branched: bool,
 }
 
 /// A statement of a macro of Fanuc that decides which line is next.
@@ -123,6 +125,7 @@ impl Line {
         self.assignments.clear();
         self.ignored.clear();
         (self.assigns, self.assigns_beside_value, self.ignores) = (false, false, false);
+        self.has_branched = false;
     }
 
     /// Returns whether the line has no word yet.

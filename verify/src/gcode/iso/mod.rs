@@ -63,7 +63,8 @@ impl<'a> Program<'a> {
     ) -> Result<Program<'a>, GcodeError> {
         let files = &setup.subprograms[..];
         let extent = flow::extent(text);
-        let variables = Variables::new(&setup.variables);
+        let mut variables = Variables::new(&setup.variables);
+        variables.has_angles = has_angles(text) || files.iter().any(|file| has_angles(&file.text));
         let structure = Structure::find(extent.text, &Scope::new(&variables, control))?;
         let in_file = |index, error| GcodeError { line: 1, fault: in_file(files, index, error) };
         let mut others = Vec::new();
@@ -192,8 +193,8 @@ impl<'a> Program<'a> {
             if progress != Progress::GoesOn {
                 break;
             }
-            if self.line.block.code_of(Group::Subprogram).is_some() {
-                let condition = "its block calls or ends a subprogram";
+            if self.line.has_branched || self.line.block.code_of(Group::Subprogram).is_some() {
+                let condition = "its block decides, or calls or ends a subprogram";
                 let remedy = "write the block after it on a line of its own";
                 return Err(combination("`;`", condition, remedy));
             }
@@ -282,10 +283,12 @@ impl<'a> Program<'a> {
         }
         self.flow.start();
         if let Some(statement) = line.statement {
+            line.has_branched = !matches!(statement, Statement::Nothing | Statement::Print(_));
             self.decide(statement, number, control)?;
             return Ok(Progress::GoesOn);
         }
         if let Some(call) = line.call.take() {
+            line.has_branched = !call.is_modal;
             let is_within = self.waiting.iter().chain([&self.flow]).any(Flow::is_in_modal_call);
             if is_within || self.flow.modal.is_some() {
                 let (condition, remedy) = ("G66 is in force", "write G67 before");
@@ -375,6 +378,7 @@ impl<'a> Program<'a> {
             && subprogram.is_none()
             && let Some(call) = self.flow.modal.clone()
         {
+            line.has_branched = true;
             self.call_macro(&call, control)?;
         }
         match block.tenths_of(Group::Stop) {
@@ -821,6 +825,16 @@ fn after_semicolon(text: &str) -> Option<&str> {
         byte == b';' && depth == 0
     })?;
     Some(&text[position + 1..])
+}
+
+/// Returns whether a text has the name of a sine or an angle, before its argument in brackets.
+fn has_angles(text: &str) -> bool {
+    let names = ["SIN", "COS", "TAN"].map(str::as_bytes);
+    let is_name = |name: &[u8]| names.iter().any(|known| known.eq_ignore_ascii_case(name));
+    text.as_bytes()
+        .windows(3)
+        .enumerate()
+        .any(|(at, name)| is_name(name) && text[at + 3..].trim_start().starts_with('['))
 }
 
 /// Returns whether a character may stand before the first word: of `/`, of a number of its switch, or a blank.

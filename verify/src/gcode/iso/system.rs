@@ -84,7 +84,7 @@ fn axis(number: u32, first: u32) -> Option<usize> {
 fn work_offset(number: u32) -> Option<(WorkOffset, usize)> {
     let index = number.checked_sub(5221)?;
     let (offset, axis) = (index / 20, index % 20);
-    (offset < 9 && axis < 6).then_some((WorkOffset::Standard(offset as u8 + 1), axis as usize))
+    (offset < 9 && axis < 6).then(|| (WorkOffset::Standard(offset as u8 + 1), axis as usize))
 }
 
 /// Returns the value of a variable of the control, if the control knows it.

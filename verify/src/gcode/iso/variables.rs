@@ -79,6 +79,8 @@ pub(super) struct Variables {
     global: BTreeMap<String, f64>,
     /// Variables of the control that the setup declares.
     declared: BTreeMap<Parameter, f64>,
+    /// Set if the program computes sines or angles, whose last digits differ between controls.
+    pub(super) has_angles: bool,
 }
 
 /// Inputs of an expression: the variables, the control, and the language, if the control is stated.

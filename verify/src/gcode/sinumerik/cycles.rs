@@ -101,6 +101,12 @@ const LAYOUTS: [Layout; 8] = [
     Layout { cycle: "CYCLE89", axis: None, geometry: 6, plane: 7, depth: 8 },
 ];
 
+/// Returns whether a name is that of a cycle which is read.
+pub(super) fn is_cycle(name: &str) -> bool {
+    name.eq_ignore_ascii_case("CYCLE800")
+        || LAYOUTS.iter().any(|layout| name.eq_ignore_ascii_case(layout.cycle))
+}
+
 /// Reads the call of a drilling cycle after its name, or returns `None` for another name.
 pub(super) fn hole(
     name: &str,

@@ -380,6 +380,11 @@ fn evaluate(function: &'static str, [first, second]: [f64; 2]) -> Result<Value, 
         "POT" => first * first,
         "TRUNC" => first.trunc(),
         "ROUND" => first.round(),
+        // Its description says downwards for numbers below 0, its examples upwards (NC programming, Job planning).
+        "ROUNDUP" if first < 0.0 && first.fract() != 0.0 => {
+            let condition = "its number is below 0, which manuals round up and down";
+            return Err(combination("ROUNDUP", condition, "write TRUNC, or TRUNC and -1"));
+        }
         "ROUNDUP" => first.ceil(),
         "LN" => first.ln(),
         "EXP" => first.exp(),

@@ -189,7 +189,7 @@ impl<'a> Source<'a> {
     }
 
     /// Returns the subprogram with a name.
-    fn subprogram(&self, name: &str) -> Option<usize> {
+    pub(super) fn subprogram(&self, name: &str) -> Option<usize> {
         let plain = Some(plain_name(name)).filter(|plain| !plain.is_empty())?;
         self.names.get(&plain.to_ascii_uppercase()).copied()
     }
@@ -322,11 +322,6 @@ impl<'a> Flow<'a> {
         self.source.partners.get(&line).map_or(line, |place| place.line)
     }
 
-    /// Goes to the start of the program (`GOTOS`).
-    pub(super) fn go_to_start(&mut self) -> Result<(), GcodeFault> {
-        self.go(self.source.sections[self.section].start)
-    }
-
     /// Goes to a label or a block number. `line` is that of the jump. Returns whether there is one.
     pub(super) fn jump(
         &mut self,
@@ -448,11 +443,6 @@ impl<'a> Flow<'a> {
             self.place = repeat.return_to;
             self.repeats.pop();
         }
-    }
-
-    /// Returns the subprogram of this text with a name.
-    pub(super) fn subprogram(&self, name: &str) -> Option<usize> {
-        self.source.subprogram(name)
     }
 
     /// Begins a subprogram, `times` times. `base` is where the variables of the caller begin.

@@ -19,7 +19,7 @@ mod words;
 use super::block::Block;
 use super::control::{Control, Hole};
 use super::error::{combination, missing, not_read};
-use super::files::{in_file, without_folder};
+use super::files::{self, in_file, without_folder};
 use super::interpreter::Progress;
 use super::note::NoteKind;
 use super::rules::{Choice, Rule};
@@ -254,6 +254,15 @@ impl<'a> Program<'a> {
         let mut after = words;
         let name = after.name();
         let is_word = name.as_bytes().get(1).is_some_and(|byte| !byte.is_ascii_digit());
+        // A program of the user is found before a cycle of the control.
+        let own_cycle = match cycles::is_cycle(name) {
+            true => self.called(name, &after)?,
+            false => None,
+        };
+        if let Some(callee) = own_cycle {
+            self.call(callee, &mut after)?;
+            return end_of_line(&mut after).map(|()| Progress::GoesOn);
+        }
         if is_word && self.statement(name, &mut after, line, control)? {
             return end_of_line(&mut after).map(|()| Progress::GoesOn);
         }
@@ -261,7 +270,7 @@ impl<'a> Program<'a> {
             end_of_line(&mut after)?;
             return Ok(self.leave(control));
         }
-        if let Some(callee) = self.called(name, &after) {
+        if let Some(callee) = self.called(name, &after)? {
             self.call(callee, &mut after)?;
             return end_of_line(&mut after).map(|()| Progress::GoesOn);
         }
@@ -343,15 +352,23 @@ impl<'a> Program<'a> {
     ) -> Result<bool, GcodeFault> {
         match name.to_ascii_uppercase().as_str() {
             "GOTO" | "GOTOF" | "GOTOB" | "GOTOC" | "GOTOS" => self.jump(name, words, line)?,
-            "IF" => {
+            // A line can have several conditions, each with its jump.
+            "IF" => loop {
                 let is_met = expression(words, &self.variables)?.truth()?;
                 let jump = words.name();
-                if !is_met {
-                    words.take_while(|byte| byte != b';');
-                    return Ok(true);
+                if is_met {
+                    self.jump(jump, words, line)?;
+                    if words.take_name("IF") {
+                        words.take_while(|byte| byte != b';');
+                    }
+                    break;
                 }
-                self.jump(jump, words, line)?;
-            }
+                jump_direction(jump)?;
+                words.name();
+                if !words.take_name("IF") {
+                    break;
+                }
+            },
             "CASE" => self.case(words, line)?,
             "REPEAT" | "REPEATB" => {
                 let is_block = name.len() == "REPEATB".len();
@@ -372,7 +389,7 @@ impl<'a> Program<'a> {
             "CALL" => {
                 words.peek();
                 let called = words.quoted().unwrap_or_else(|| words.name());
-                match self.subprogram(called) {
+                match self.subprogram(called)? {
                     Some(callee) => self.call(callee, words)?,
                     None => return Err(no_subprogram(called)),
                 }
@@ -388,7 +405,7 @@ impl<'a> Program<'a> {
                 name.peek();
                 let name = name.quoted().unwrap_or_default();
                 let name = without_folder(name);
-                match self.in_other_file(name) {
+                match self.found(name, |file| file != self.file)? {
                     Some(callee) => self.call(callee, words)?,
                     None => return Err(no_subprogram(name)),
                 }
@@ -396,7 +413,12 @@ impl<'a> Program<'a> {
             "MCALL" if words.is_at_end() => self.modal_hole = None,
             "MCALL" => {
                 let cycle = words.name();
-                let Some(hole) = cycles::hole(cycle, words, &self.variables)? else {
+                let is_own = self.subprogram(cycle)?.is_some();
+                let hole = match is_own {
+                    true => None,
+                    false => cycles::hole(cycle, words, &self.variables)?,
+                };
+                let Some(hole) = hole else {
                     let meaning = "a modal call of another program than a drilling cycle";
                     return Err(not_read(
                         format!("MCALL {}", shown(cycle)),
@@ -430,13 +452,7 @@ impl<'a> Program<'a> {
 
     /// Executes a jump after its word.
     fn jump(&mut self, word: &str, words: &mut Cursor<'a>, line: usize) -> Result<(), GcodeFault> {
-        let direction = match word.to_ascii_uppercase().as_str() {
-            "GOTOF" => Direction::Forward,
-            "GOTOB" => Direction::Backward,
-            "GOTO" | "GOTOC" => Direction::Both,
-            "GOTOS" => return self.flow.go_to_start(),
-            _ => return Err(missing("IF", "a jump after its condition")),
-        };
+        let direction = jump_direction(word)?;
         let target = words.name();
         if target.is_empty() || self.variables.find(target).is_some() {
             let meaning = "a jump to a name that is computed";
@@ -516,31 +532,43 @@ impl<'a> Program<'a> {
     }
 
     /// Returns the subprogram that a line calls by its first name: `NAME`, `NAME(…)` or `L123`.
-    fn called(&self, name: &str, after: &Cursor) -> Option<Callee> {
+    fn called(&self, name: &str, after: &Cursor) -> Result<Option<Callee>, GcodeFault> {
         let mut after = *after;
         let is_call = after.is_at_end() || matches!(after.byte(), Some(b'(' | b'P' | b'p'));
         let is_named = name.len() > 1
             && (name.starts_with(['L', 'l']) || !name.as_bytes()[1].is_ascii_digit());
         let is_one = is_call && is_named && self.variables.find(name).is_none();
-        is_one.then(|| self.subprogram(name)).flatten()
+        if is_one { self.subprogram(name) } else { Ok(None) }
     }
 
-    /// Returns the subprogram with a name: of the present file or, if that has none, of another one.
-    fn subprogram(&self, name: &str) -> Option<Callee> {
-        match self.flow.subprogram(name) {
-            Some(section) => Some(Callee { file: self.file, section }),
-            None => self.in_other_file(name),
+    /// Returns the subprogram with a name, of all files.
+    fn subprogram(&self, name: &str) -> Result<Option<Callee>, GcodeFault> {
+        self.found(name, |_| true)
+    }
+
+    /// Returns the subprogram with a name, of the files that are `sought` by their numbers.
+    ///
+    /// # Errors
+    /// If two files have it: which one a control takes depends on its folders.
+    fn found(
+        &self,
+        name: &str,
+        sought: impl Fn(usize) -> bool,
+    ) -> Result<Option<Callee>, GcodeFault> {
+        let in_file = |file: usize| match file {
+            0 => self.sources[0].subprogram(name),
+            file => self.sources[file].section(&self.files[file - 1], name),
+        };
+        let mut found = (0..self.sources.len())
+            .filter(|file| sought(*file))
+            .filter_map(|file| Some(Callee { file, section: in_file(file)? }));
+        let first = found.next();
+        if let (Some(first), Some(second)) = (first, found.next()) {
+            let [first, second] =
+                [first.file, second.file].map(|file| files::name(self.files, file).to_owned());
+            return Err(GcodeFault::TwoFiles { label: name.to_owned(), first, second });
         }
-    }
-
-    fn in_other_file(&self, name: &str) -> Option<Callee> {
-        let files = (1..).zip(self.files).filter(|(file, _)| *file != self.file);
-        files
-            .filter_map(|(file, known)| {
-                let section = self.sources[file].section(known, name)?;
-                Some(Callee { file, section })
-            })
-            .next()
+        Ok(first)
     }
 
     /// Calls a subprogram with the arguments and the number of times that follow.
@@ -668,4 +696,20 @@ fn no_subprogram(name: &str) -> GcodeFault {
         meaning,
         "name its file in `subprograms` of the job, or append it after a line `%_N_NAME_SPF`",
     )
+}
+
+/// Returns the direction of a jump by its word.
+fn jump_direction(word: &str) -> Result<Direction, GcodeFault> {
+    match word.to_ascii_uppercase().as_str() {
+        "GOTOF" => Ok(Direction::Forward),
+        "GOTOB" => Ok(Direction::Backward),
+        "GOTO" | "GOTOC" => Ok(Direction::Both),
+        // NC programming, jump to the start of the program: by a signal of the PLC the control goes on with the next block.
+        "GOTOS" => Err(not_read(
+            "GOTOS".to_owned(),
+            "a jump that a signal of the machine allows",
+            "write GOTOB and a label at the start",
+        )),
+        _ => Err(missing("IF", "a jump after its condition")),
+    }
 }

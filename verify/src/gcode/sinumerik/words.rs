@@ -134,6 +134,13 @@ impl<'a> Program<'a> {
             let condition = "MCALL is in force, and its block has none of X, Y and Z";
             return Err(combination("a rotary axis", condition, "write MCALL alone before"));
         }
+        // The control calls the cycle also after F, S or a motion word alone.
+        let is_path = block.has_any("FS") || block.code_of(Group::Motion).is_some();
+        if self.modal_hole.is_some() && !is_motion && is_path {
+            let condition = "MCALL is in force, and its block has none of X, Y and Z";
+            let remedy = "write it before MCALL or in the block of a position";
+            return Err(combination("F, S or a motion word", condition, remedy));
+        }
         if !block.is_empty() || block.vector.is_some() {
             control.execute(block)?;
             self.flow.count_steps(control.pending.len())?;

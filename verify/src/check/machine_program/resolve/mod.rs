@@ -450,7 +450,9 @@ impl<'a> Resolver<'a> {
         let is_empty = self.setup.is_spindle_empty(step.state.tool)
             && !step.commanded[3..].contains(&true)
             && (is_of_change || cause == UnknownCause::Return || cause.is_of_empty());
-        let stays_at_top = self.is_at_top && (step.is_homeward || !step.commanded[2]);
+        let goes_home =
+            step.is_homeward && (self.was_at_top || step.commanded == Z_ALONE || is_empty);
+        let stays_at_top = self.is_at_top && (goes_home || !step.commanded[2]);
         step.rapid
             && ((is_of_change || is_empty) && stays_at_top
                 || is_empty && arrives && self.was_at_top)
@@ -602,8 +604,13 @@ impl<'a> Resolver<'a> {
         let mut known = (0..6).filter(|k| current[*k].is_some());
         let knows_axis = known.any(|k| self.machine.axis(Letter::ALL[k]).is_some());
         let is_start = self.cause == UnknownCause::Start;
-        // A height that is forgotten is none at which other axes go home.
-        let is_low = self.cause == UnknownCause::TipHeight && !step.commanded[2];
+        // A height that is forgotten is none at which other axes go home, nor is that of a tool change: with the tool in the spindle the
+        // control does not change it. From there Z goes first, alone.
+        let is_low = match self.cause {
+            UnknownCause::TipHeight => !step.commanded[2],
+            UnknownCause::ToolChange => !self.was_at_top && step.commanded != Z_ALONE,
+            _ => false,
+        };
         // The way to a reference position before the first position is the operator's, too.
         if lost().next().is_some() && (!is_start || knows_axis) {
             self.cause = UnknownCause::Return;
