@@ -43,7 +43,7 @@ impl LoadedTool {
             let tool = load(&in_library(name, library, params, libraries, true)?, params)?;
             return Ok(LoadedTool::File(Box::new(tool)));
         }
-        if extension(Path::new(name)).as_deref() == Some("tool") {
+        if is_tool_file(name) {
             return Ok(LoadedTool::File(Box::new(load_file(Path::new(name), params)?)));
         }
         let tool = built_in(&name.to_string_lossy(), params.root())?;
@@ -82,7 +82,7 @@ pub(crate) fn compile_named(
         let source = in_library(name, library, params, libraries, false)?;
         return Ok(compile_source(&source, params));
     }
-    if extension(Path::new(name)).as_deref() == Some("tool") {
+    if is_tool_file(name) {
         return Ok(compile_source(&read_source(Path::new(name), params)?, params));
     }
     let SourceFiles { file, text, mounted } = source_files(&name.to_string_lossy())?;
@@ -139,6 +139,11 @@ fn in_library(
     Ok(tool.source())
 }
 
+/// Returns whether a name is that of a `.tool` file.
+fn is_tool_file(name: &OsStr) -> bool {
+    extension(Path::new(name)).as_deref() == Some("tool")
+}
+
 /// Returns a built-in tool by its name.
 ///
 /// # Errors
@@ -154,8 +159,7 @@ fn built_in(name: &str, root: Option<&Path>) -> Result<&'static dyn Tool, Failur
         // A longer name has room for more slips.
         let near = near.filter(|(distance, _)| *distance <= 1 + name.len() / 4);
         let is_file = |file: &Path| file.is_file() && root.is_none_or(|root| is_within(file, root));
-        let is_tool_file = extension(Path::new(name)).as_deref() == Some("tool");
-        let hint = if is_tool_file {
+        let hint = if is_tool_file(OsStr::new(name)) {
             "`touchoff tools` lists them; this command takes no files".to_owned()
         } else if Path::new(name).components().count() == 1 && is_file(Path::new(name)) {
             "a tool's file ends in `.tool`: rename it".to_owned()

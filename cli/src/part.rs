@@ -61,20 +61,13 @@ pub(crate) fn no_triangles(part: &Path, what: &'static str) -> Failure {
 fn read_geometry(part: &Path, unit: Unit) -> Result<Geometry, Failure> {
     let geometry = Geometry::read(part, unit)?;
     if let Geometry::Mesh(mesh) = &geometry {
-        print_findings(part, mesh);
+        print_findings(part, mesh, true);
     }
     Ok(geometry)
 }
 
-/// Prints the findings about a mesh.
-fn print_findings(file: &Path, mesh: &Mesh) {
-    for finding in mesh.diagnostics().findings() {
-        message!("{}: {finding}", file.display());
-    }
-}
-
-/// Prints the findings about a mesh of a job: those of a mesh without irregularities if `verbose` is set.
-pub(crate) fn print_irregularities(file: &Path, mesh: &Mesh, verbose: bool) {
+/// Prints the findings about a mesh, and those of a mesh without irregularities if `verbose` is set.
+pub(crate) fn print_findings(file: &Path, mesh: &Mesh, verbose: bool) {
     let findings = mesh.diagnostics().findings();
     // The first says what kind of mesh it is.
     for finding in findings.iter().filter(|_| verbose || findings.len() > 1) {

@@ -65,14 +65,14 @@ pub(crate) fn read(
     }
     for body in &inputs.bodies {
         if let Some(file) = &body.file {
-            part::print_irregularities(file, &body.mesh, verbose);
+            part::print_findings(file, &body.mesh, verbose);
         }
     }
     let entry = inputs.file.stock.as_ref().and_then(|entry| entry.mesh.as_ref());
     if let (Some(file), Some(JobStock { shape: StockShape::Mesh(mesh), .. })) =
         (entry, &inputs.stock)
     {
-        part::print_irregularities(file, mesh, verbose);
+        part::print_findings(file, mesh, verbose);
     }
     Ok(inputs)
 }
@@ -235,16 +235,17 @@ fn style(severity: Severity) -> Style {
     color.on_default().bold()
 }
 
+/// Returns the numbers of violations, of undecided findings and of remarks.
+pub(crate) fn finding_counts(report: &JobReport<'_>) -> [usize; 3] {
+    [Severity::Violation, Severity::Undecided, Severity::Remark].map(|severity| {
+        report.findings().iter().filter(|finding| finding.severity == severity).count()
+    })
+}
+
 /// Prints the verdict with the numbers of findings, in a line.
 pub(crate) fn print_verdict(report: &JobReport<'_>) {
-    let count =
-        |severity| report.findings().iter().filter(|found| found.severity == severity).count();
-    let counts = [
-        (count(Severity::Violation), "violation"),
-        (count(Severity::Undecided), "undecided finding"),
-        (count(Severity::Remark), "remark"),
-    ];
-    let counts = counts.into_iter().filter(|(count, _)| *count > 0);
+    let nouns = ["violation", "undecided finding", "remark"];
+    let counts = finding_counts(report).into_iter().zip(nouns).filter(|(count, _)| *count > 0);
     let counts = counts.map(|(count, noun)| match count {
         1 => format!("1 {noun}"),
         _ => format!("{count} {noun}s"),

@@ -1,4 +1,4 @@
-//! How the triangles of a mesh hang together: edges and their uses, neighbours, shells.
+//! The connections of a mesh's triangles: edges and their uses, neighbours, shells.
 
 use crate::cancellation;
 use crate::mesh::{Mesh, area_and_normal, bounds};

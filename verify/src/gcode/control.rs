@@ -187,11 +187,11 @@ enum Motion {
 /// A return under a length offset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Returned {
-    /// Of Z to a reference position, with other axes or alone.
+    /// A return of Z to a reference position, with other axes or alone.
     Height,
-    /// Of other axes alone.
+    /// A return of other axes alone.
     OtherAxes,
-    /// Of Z by G53.
+    /// A motion of Z by G53.
     MachineHeight,
 }
 

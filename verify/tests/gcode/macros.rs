@@ -179,7 +179,7 @@ fn modal_macros_are_called_after_each_motion() {
         O9200\nG91 Y#1\nG90\nM99\n";
     let expected = [[1.0, 0.0], [2.0, 0.0], [2.0, 0.5], [3.0, 1.0], [3.0, 1.5], [4.0, 1.5]];
     assert_ends(program, Choice::Iso, &expected);
-    // In a subprogram, too, and after a full circle.
+    // A subprogram and a full circle, too.
     let calls = "G21 G90 G0 F100\nG66 P9200 A0.5\nM98 P9300\nG2 I9.\nX4.\nM30\n\
         O9200\nG91 G0 Y#1\nG90\nM99\nO9300\nG0 X2.\nM99\n";
     let expected = [[2.0, 0.0], [2.0, 0.5], [2.0, 0.5], [2.0, 1.0], [4.0, 1.0], [4.0, 1.5]];
@@ -556,7 +556,7 @@ fn positions_that_a_control_reports_otherwise_are_not_known() {
         let error = read(program, &setup(dialect)).expect_err(program);
         assert!(is_fault(&error, &format!("P0211 {word}")), "{program}: {error}");
     }
-    // Under a length offset that a return may have ended.
+    // A height under a length offset that a return may have ended.
     let lengths = BTreeMap::from([(1, 50.0)]);
     let setup = ControlSetup { lengths, home: Some([0.0; 6]), ..setup(Choice::Iso) };
     let text = "G21 G90 G0 G43 H1 Z9.\nG91 G28 Z0.\nG90 X#5003";

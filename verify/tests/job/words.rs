@@ -29,7 +29,7 @@ fn a_whole_number_after_r_is_either_on_haas() {
     scene.gives(HAAS, FINDINGS, &["V0103 5 the clamp", "V0103 5 under whole_radii = \"units\""]);
     scene.gives(FANUC, CLEAN, &[]);
     scene.gives(ANY, FINDINGS, &["V0103 5 the clamp"]);
-    // That of a corner, too: 5 mm cut off 2.07 mm of it.
+    // The increment of a corner, too: 5 mm cut off 2.07 mm of it.
     let corner = "G0 X-6. Y-9. Z20.\nG1 Z1.\nX9. ,R5\nY9.\nG0 Z20.";
     let corner = Scene::new(corner).obstacle([6.5, -6.9, -1.0], [6.9, -6.5, 9.0]);
     corner.with("anyway = true").gives(HAAS, FINDINGS, &["V0101 under whole_radii = \"units\""]);

@@ -3,10 +3,11 @@
 use super::super::{Content, prefix};
 use super::plain;
 use crate::program::extent;
+use crate::verify::finding_counts;
 use maud::{Markup, html};
 use std::collections::BTreeMap;
 use touchoff::Unit;
-use touchoff_verify::job::{JobBody, PairReport, Severity};
+use touchoff_verify::job::{JobBody, PairReport};
 use touchoff_verify::{JobTool, Verdict};
 
 /// Returns the verdict, and what it is about.
@@ -35,10 +36,7 @@ fn plural(count: usize) -> &'static str {
 /// Returns the verdict, as the exit status of `verify` states it.
 fn verdict(content: &Content<'_>) -> Markup {
     let refusals = content.checked.refusals();
-    let [violations, undecided, remarks] =
-        [Severity::Violation, Severity::Undecided, Severity::Remark].map(|severity| {
-            content.checked.findings().iter().filter(|finding| finding.severity == severity).count()
-        });
+    let [violations, undecided, remarks] = finding_counts(content.checked);
     let (class, text) = if content.checked.verdict() == Verdict::None {
         ("open", "Not verified".to_owned())
     } else if violations > 0 {

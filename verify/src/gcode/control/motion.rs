@@ -213,7 +213,7 @@ impl Control {
         turns: u32,
     ) -> Result<(), GcodeFault> {
         let StepPath::Arc { plane, sweep, .. } = *path else { return Ok(()) };
-        // Of the last turn.
+        // The angle of the last turn.
         let angle = sweep.abs() - TAU * f64::from(turns - 1);
         let ends = [&self.position, end].map(|position| in_plane(position, plane.axes()));
         let [Some(from), Some(to)] = ends else { return Ok(()) };

@@ -70,7 +70,7 @@ impl Control {
             Report::Position(axis) => {
                 on(axis, self.position[axis].filter(|_| self.is_position_plain(axis)))
             }
-            // That of the tool's centre, which is not the programmed one.
+            // The centre of the tool is not at the programmed position.
             Report::Machine(_) if self.compensation.is_some() => None,
             Report::Machine(axis) => on(axis, self.state.to_machine(self.position)[axis]),
             Report::Origin(offset, axis) => on(axis, self.origin_of(offset).0[axis]),

@@ -181,7 +181,7 @@ impl<'a> Source<'a> {
                 if let Some(number) = sequence_number(line) {
                     numbers.entry(number).or_default().push(place);
                 }
-                // Where a semicolon ends a block, the line has further ones, at which execution cannot begin: as if they stood twice.
+                // Execution cannot begin at the blocks after a semicolon, where one ends a block: as if their numbers stood twice.
                 for number in line.split(';').skip(1).filter_map(sequence_number) {
                     numbers.entry(number).or_default().extend([place; 2]);
                 }

@@ -193,7 +193,7 @@ impl<'a> Program<'a> {
             if progress != Progress::GoesOn {
                 break;
             }
-            if self.line.has_branched || self.line.block.code_of(Group::Subprogram).is_some() {
+            if self.line.has_branched {
                 let condition = "its block decides, or calls or ends a subprogram";
                 let remedy = "write the block after it on a line of its own";
                 return Err(combination("`;`", condition, remedy));
@@ -306,6 +306,7 @@ impl<'a> Program<'a> {
         }
         let block = &mut line.block;
         let subprogram = block.code_of(Group::Subprogram);
+        line.has_branched = subprogram.is_some();
         let is_call = matches!(subprogram, Some(Code { tenths: 970 | 980 | 1980, .. }));
         if let Some(code) = subprogram
             && (line.assigns || block.has_more_than_call())
@@ -830,11 +831,13 @@ fn after_semicolon(text: &str) -> Option<&str> {
 /// Returns whether a text has the name of a sine or an angle, before its argument in brackets.
 fn has_angles(text: &str) -> bool {
     let names = ["SIN", "COS", "TAN"].map(str::as_bytes);
-    let is_name = |name: &[u8]| names.iter().any(|known| known.eq_ignore_ascii_case(name));
-    text.as_bytes()
-        .windows(3)
-        .enumerate()
-        .any(|(at, name)| is_name(name) && text[at + 3..].trim_start().starts_with('['))
+    // Most programs have no bracket, and are long.
+    let brackets = text.match_indices('[');
+    brackets.map(|(at, _)| text[..at].trim_end().as_bytes()).any(|before| {
+        before
+            .last_chunk::<3>()
+            .is_some_and(|end| names.iter().any(|name| name.eq_ignore_ascii_case(end)))
+    })
 }
 
 /// Returns whether a character may stand before the first word: of `/`, of a number of its switch, or a blank.

@@ -255,15 +255,8 @@ impl<'a> Program<'a> {
         let name = after.name();
         let is_word = name.as_bytes().get(1).is_some_and(|byte| !byte.is_ascii_digit());
         // A program of the user is found before a cycle of the control.
-        let own_cycle = match cycles::is_cycle(name) {
-            true => self.called(name, &after)?,
-            false => None,
-        };
-        if let Some(callee) = own_cycle {
-            self.call(callee, &mut after)?;
-            return end_of_line(&mut after).map(|()| Progress::GoesOn);
-        }
-        if is_word && self.statement(name, &mut after, line, control)? {
+        let is_own = cycles::is_cycle(name) && self.called(name, &after)?.is_some();
+        if is_word && !is_own && self.statement(name, &mut after, line, control)? {
             return end_of_line(&mut after).map(|()| Progress::GoesOn);
         }
         if name.eq_ignore_ascii_case("RET") {

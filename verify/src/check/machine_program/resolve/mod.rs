@@ -293,7 +293,7 @@ impl<'a> Resolver<'a> {
             Located::Unknown(cause) => {
                 let lost = self.lose_linear(step, cause);
                 // The way home of machine coordinates is the same with and without the length offset: of Z alone, and of others at its top.
-                let is_free = self.was_at_top || step.commanded == Z_ALONE;
+                let is_free = self.is_way_home_free(step);
                 return Ok(match cause {
                     _ if cause.is_of_empty() && step.is_homeward && is_free => {
                         Resolved::Unknown(UnknownCause::Home)
@@ -442,6 +442,11 @@ impl<'a> Resolver<'a> {
         self.is_placed && z >= self.setup.top.unwrap_or_default()
     }
 
+    /// Returns whether nothing is in the way home from an unknown place: of Z alone, or of other axes at its top.
+    fn is_way_home_free(&self, step: &Step) -> bool {
+        self.was_at_top || step.commanded == Z_ALONE
+    }
+
     /// Returns whether an unknown motion is on the way from a tool change: that of Z to the top of its travel, or of other axes while it is
     /// there. That of an empty spindle from there to a known position (`arrives`) is judged by its end.
     pub(super) fn leaves_change(&self, step: &Step, cause: UnknownCause, arrives: bool) -> bool {
@@ -450,8 +455,7 @@ impl<'a> Resolver<'a> {
         let is_empty = self.setup.is_spindle_empty(step.state.tool)
             && !step.commanded[3..].contains(&true)
             && (is_of_change || cause == UnknownCause::Return || cause.is_of_empty());
-        let goes_home =
-            step.is_homeward && (self.was_at_top || step.commanded == Z_ALONE || is_empty);
+        let goes_home = step.is_homeward && (is_empty || self.is_way_home_free(step));
         let stays_at_top = self.is_at_top && (goes_home || !step.commanded[2]);
         step.rapid
             && ((is_of_change || is_empty) && stays_at_top
@@ -608,7 +612,7 @@ impl<'a> Resolver<'a> {
         // control does not change it. From there Z goes first, alone.
         let is_low = match self.cause {
             UnknownCause::TipHeight => !step.commanded[2],
-            UnknownCause::ToolChange => !self.was_at_top && step.commanded != Z_ALONE,
+            UnknownCause::ToolChange => !self.is_way_home_free(step),
             _ => false,
         };
         // The way to a reference position before the first position is the operator's, too.
