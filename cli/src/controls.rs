@@ -5,7 +5,7 @@ use crate::output::Output;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::io::Write;
-use touchoff_verify::gcode::{ControlRules, Rule};
+use touchoff_verify::gcode::{ControlRules, GENERIC, Rule};
 use touchoff_verify::machine::{Axis, Machine, MachineBody, Opponent, Side};
 
 /// A control as a JSON object.
@@ -76,6 +76,9 @@ pub(crate) fn controls(name: Option<&str>, json: bool) -> Result<(), Failure> {
             let stated = format!("{} = \"{word}\"", rule.key());
             writeln!(out, "  {stated:<40} {about}: {meaning}")?;
         }
+    }
+    if name.is_none() && !json {
+        writeln!(out, "{GENERIC}\n  states no rule: each of these ways is checked")?;
     }
     Ok(out.flush()?)
 }

@@ -118,23 +118,35 @@ pub fn find_in_folder(folder: &Path, name: &OsStr) -> Result<PathBuf, FindError>
     if !is_tool(&file) {
         file.as_mut_os_string().push(".tool");
     }
-    // A file with the tool's name goes before a number of the list.
     let list = within(folder, folder.join(NUMBERS))?;
     let name = name_of(name).to_ascii_uppercase();
-    match read_numbers(folder)?.get(&name).map(Vec::as_slice) {
-        Some([listed]) if !file.is_file() && !is_tool(Path::new(listed)) => {
+    let mut numbers = read_numbers(folder)?;
+    let mut tools = numbers.remove(&name).unwrap_or_default();
+    // A file with the name of a number is one more tool with this number.
+    let own = file.file_name().map(|own| own.to_string_lossy().into_owned());
+    if let Some(own) = own.filter(|own| !tools.contains(own) && file.is_file()) {
+        tools.push(own);
+    }
+    match &tools[..] {
+        [] => within(folder, file),
+        [listed] if !is_tool(Path::new(listed)) => {
             let message =
                 format!("{name} is `{listed}`, whose name does not end in `.tool`: rename it");
             Err(FindError::Numbers { file: list.display().to_string(), message })
         }
-        Some([listed]) if !file.is_file() => within(folder, folder.join(listed)),
-        Some(several) if !file.is_file() => Err(FindError::Several {
+        [listed] => within(folder, folder.join(listed)),
+        several => Err(FindError::Several {
             name,
             file: shown(),
             tools: several.iter().map(|tool| format!("`{tool}`")).collect(),
         }),
-        _ => within(folder, file),
     }
+}
+
+/// Returns whether a key of the list is `T` with a number as [`write_numbers`] writes it.
+fn is_number(key: &str) -> bool {
+    let number = key.strip_prefix('T').and_then(|digits| digits.parse::<u32>().ok());
+    number.is_some_and(|number| key == format!("T{number}"))
 }
 
 fn is_tool(file: &Path) -> bool {
@@ -203,8 +215,16 @@ fn read_numbers(folder: &Path) -> Result<Numbers, FindError> {
     let path = folder.join(NUMBERS);
     let file = path.display().to_string();
     match read_text_file(&path, FileKind::Settings) {
-        Ok(text) => toml::from_str(&text)
-            .map_err(|error| FindError::Numbers { file, message: error.message().to_owned() }),
+        Ok(text) => {
+            let refused = |message: String| FindError::Numbers { file: file.clone(), message };
+            let numbers: Numbers =
+                toml::from_str(&text).map_err(|error| refused(error.message().to_owned()))?;
+            // Another spelling of a number would not be found, and could contradict the one that is.
+            match numbers.keys().find(|key| !is_number(key)) {
+                Some(key) => Err(refused(format!("`{key}` is no number of a tool: write `T1`"))),
+                None => Ok(numbers),
+            }
+        }
         // A folder of tools without numbers has no list.
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Numbers::new()),
         Err(source) => Err(FindError::Unreadable { file, source }),

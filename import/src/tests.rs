@@ -266,8 +266,19 @@ fn tools_of_a_folder_end_in_tool_and_stand_in_it() {
         assert_eq!(found, place(file), "{name}");
         assert_eq!(crate::files_in_folder(folder.path()).contains(&found), found.is_file());
     }
-    let listed = find("T3").expect_err("no tool").to_string();
+    let refused = |name: &str| find(name).expect_err("no tool").to_string();
+    let listed = refused("T3");
     assert!(listed.contains("tools.toml: T3 is `T3`") && listed.ends_with("rename it"), "{listed}");
+    // A number of two tools, and numbers in other spellings.
+    std::fs::write(place("T2.tool"), "").expect("written");
+    let several = refused("T2");
+    assert!(several.contains("`sub/listed.tool`, `T2.tool`"), "{several}");
+    for key in ["T02", "t2", "2", "T+2", "T"] {
+        std::fs::write(place("tools.toml"), format!("{key:?} = [\"sub/listed.tool\"]"))
+            .expect("written");
+        let message = refused("T2");
+        assert!(message.contains(&format!("`{key}` is no number")), "{message}");
+    }
 }
 
 /// Values of few bytes take much memory.

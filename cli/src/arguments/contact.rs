@@ -85,7 +85,7 @@ pub(crate) struct CheckArguments {
     #[arg(long, value_name = "NAME|FILE.toml")]
     pub(crate) machine: Option<OsString>,
     /// Control of a G-code program: `fanuc`, `haas`, `linuxcnc`, `siemens`, `heidenhain`, or a file (`touchoff controls`
-    /// prints one). Without it, what every one of them does is checked.
+    /// prints one); `generic` checks what every one of them does. G-code needs one, but for Klartext.
     #[arg(long, value_name = "NAME|FILE.toml")]
     pub(crate) control: Option<OsString>,
     /// Largest depth allowed for any surface of the tool in the part, in the part's unit.

@@ -158,6 +158,16 @@ fn names_and_links_of_jobs_are_no_commands() {
     let below =
         script("integrations/verify-jobs linked/out", folder.path(), &["a-b.toml".to_owned()]);
     assert_eq!(below.status.code(), Some(2), "{}", stderr(&below));
+    // A shell strips line breaks, and this link leads to another one.
+    std::fs::create_dir(place("d")).expect("a folder");
+    symlink("d\n", place("to_d")).expect("a link");
+    symlink(elsewhere.path(), place("d\n")).expect("a link");
+    for findings in ["to_d", "new/../../d"] {
+        let command = format!("integrations/verify-jobs {findings}");
+        let outside = script(&command, folder.path(), &["a-b.toml".to_owned()]);
+        assert_eq!(outside.status.code(), Some(2), "{}", stderr(&outside));
+        assert!(!place("new").exists());
+    }
     assert_eq!(std::fs::read_dir(elsewhere.path()).expect("a folder").count(), 0);
     // Findings that a repository brings along are removed where those of the run go, and nowhere else.
     std::fs::write(elsewhere.path().join("kept.sarif"), "").expect("written");

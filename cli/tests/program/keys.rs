@@ -41,7 +41,7 @@ fn all_keys_are_documented() {
         format!("run PART --tool D2Ball --program {program} --certify 1e-3"),
         format!("verify PART --tool D2Ball --program {program} --allow shank=-9"),
         format!("verify PART --tool Block --program {solid}"),
-        format!("verify PART --tool D2Ball --program {milled}"),
+        format!("verify PART --tool D2Ball --program {milled} --control generic"),
         "haptic PART --tool D2Ball --duration 0.05".to_owned(),
         format!("sweep PART --tool D2Ball --directions 20 --tolerance 0.05 -o {map}"),
         format!("map {map}"),

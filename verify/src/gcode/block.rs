@@ -327,6 +327,8 @@ impl Code {
     /// Returns whether nothing is known of an effect on the path.
     pub(super) fn can_be_ignored(self) -> bool {
         match group(self) {
+            // Findings come from the turn of the spindle.
+            Ok(_) if matches!((self.letter, self.tenths), ('M', 30 | 40 | 50 | 190)) => false,
             Ok(group) => matches!(group, Group::PassedOver | Group::PathControl),
             Err(GcodeFault::NotRead { remedy, .. }) => remedy == IGNORE,
             Err(_) => true,

@@ -79,7 +79,7 @@ pub use files::{BlockLine, SubprogramFile, SubprogramLine};
 pub use interpreter::Interpreter;
 pub use iso::ExpressionFault;
 pub use note::{NoteKind, ProgramNote};
-pub use rules::{Choice, ControlError, ControlFault, ControlRules, Rule};
+pub use rules::{Choice, ControlError, ControlFault, ControlRules, GENERIC, Rule};
 pub(crate) use state::about;
 pub use state::{ControlState, Frame, LengthOffset, Position, Rotation, Tcp, WorkOffset};
 pub use survey::Survey;
@@ -110,10 +110,12 @@ const FREE_STEPS: usize = 100;
 /// Largest number of motions of one block with a canned cycle.
 pub const MAX_CYCLE_STEPS: usize = 100_000;
 
-/// Returns whether a name is that of a variable that a job can state: `#500` or `#<_depth>`, `R1` of Sinumerik, `Q1`, `QL1` or `QR1` of
-/// Klartext.
-pub(crate) fn is_variable(name: &str) -> bool {
-    iso::is_variable(name) || sinumerik::is_variable(name) || klartext::is_variable(name)
+/// Returns the name of a variable that a job can state, in one spelling: `#500` or `#<_depth>`, `R1` of Sinumerik, `Q1`, `QL1` or `QR1`
+/// of Klartext.
+pub(crate) fn variable_name(text: &str) -> Option<String> {
+    iso::variable_name(text)
+        .or_else(|| sinumerik::variable_name(text))
+        .or_else(|| klartext::variable_name(text))
 }
 
 /// State of the control before the program.

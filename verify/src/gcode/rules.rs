@@ -473,6 +473,9 @@ const RULES: [Entry; 28] = [
     },
 ];
 
+/// The name of no control, of which no rule is stated.
+pub const GENERIC: &str = "generic";
+
 /// The controls that are known by name.
 const CONTROLS: [&str; 5] = ["fanuc", "haas", "linuxcnc", "siemens", "heidenhain"];
 
@@ -606,15 +609,19 @@ impl ControlRules {
     }
 
     /// Returns a control that is known by name: it states every rule but the operator's switch for
-    /// [optional blocks](Rule::OptionalBlocks), and what depends on a parameter that is set either way.
+    /// [optional blocks](Rule::OptionalBlocks), and what depends on a parameter that is set either way. [`GENERIC`] states none, so that
+    /// a result holds for each of them.
     ///
     /// # Errors
     /// [`ControlError::UnknownName`] for another name.
     pub fn named(name: &str) -> Result<ControlRules, ControlError> {
+        if name == GENERIC {
+            return Ok(ControlRules::default());
+        }
         let Some(control) = CONTROLS.iter().position(|known| *known == name) else {
             return Err(ControlError::UnknownName {
                 name: shown(name),
-                nearest: closest(name, ControlRules::names()),
+                nearest: closest(name, ControlRules::names().chain([GENERIC])),
             });
         };
         let stated = Rule::all().zip(CONTROL_CHOICES.map(|choices| choices[control]));
@@ -718,6 +725,8 @@ impl ControlRules {
     /// Passes over a word for a reason, as [`ControlRules::ignoring`] does.
     fn ignore(&mut self, word: &str, reason: &str) -> Result<(), ControlFault> {
         let upper = word.trim().to_ascii_uppercase();
+        // `M08` is M8.
+        let upper = Code::parse(&upper).map_or(upper, |code| code.to_string());
         let is_reason = !reason.trim().is_empty() && !reason.contains(char::is_control);
         match (can_be_ignored(&upper), is_reason) {
             (false, _) => Err(ControlFault::HasEffect { word: shown(word) }),

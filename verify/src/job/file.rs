@@ -1,12 +1,13 @@
 //! Job files: TOML, with paths relative to the folder of the file.
 
 use super::program::{Program, read_control, read_subprograms};
-use super::{Hand, JobError, JobFileFault, PART, checked_margin};
+use super::{Hand, JobError, JobFileFault, PART, STOCK, checked_margin};
 use crate::gcode::{
-    Choice, ControlRules, ControlSetup, LARGEST_NUMBER, Rule, SubprogramFile, WorkOffset,
-    is_variable,
+    Choice, ControlRules, ControlSetup, LARGEST_NUMBER, Rule, SubprogramFile, WorkOffset, rules_of,
+    variable_name,
 };
 use crate::machine::is_name;
+use crate::program::ProgramFile;
 use crate::{ToolSelection, ToolUse};
 use serde::{Deserialize, Deserializer};
 use std::collections::{BTreeMap, BTreeSet};
@@ -365,6 +366,14 @@ impl JobFile {
         if !names.all(|name| is_name(name)) {
             return Err(refused(JobFileFault::Name));
         }
+        let others = job.other_part.iter().map(PartEntry::name);
+        let fixtures = job.fixture.iter().map(|fixture| fixture.name.clone());
+        let mut bodies = BTreeSet::from([PART.to_owned(), STOCK.to_owned()]);
+        for name in others.chain(fixtures) {
+            if !bodies.insert(name.clone()) {
+                return Err(refused(JobFileFault::SecondBody { name }));
+            }
+        }
         for fixture in &job.fixture {
             checked_margin(fixture.margin).map_err(|_| refused(JobFileFault::Margin))?;
         }
@@ -375,10 +384,13 @@ impl JobFile {
             let values = values.into_values();
             let is_number =
                 !values.is_empty() && values.iter().all(|value| value.abs() <= LARGEST_NUMBER);
-            if !is_number || !is_variable(&name) {
+            let Some(variable) = variable_name(&name).filter(|_| is_number) else {
                 return Err(refused(JobFileFault::Variable { name }));
+            };
+            // `#<_D>` and `#<_d>` are one.
+            if variables.insert(variable.clone(), values).is_some() {
+                return Err(refused(JobFileFault::SecondVariable { name: variable }));
             }
-            variables.insert(name, values);
         }
         let folder = file.parent().unwrap_or(Path::new(""));
         let beside = |path: PathBuf| folder.join(path);
@@ -487,18 +499,24 @@ impl JobFile {
         })
     }
 
-    /// Reads the program, and interprets G-code.
+    /// Reads the program, and interprets G-code as the control that is stated reads it.
     ///
     /// # Errors
-    /// If the program, the machine or the control is refused, or if a single program of positions has one position.
+    /// If the program, the machine or the control is refused, if no control is stated and several read the language of the program, or if
+    /// a single program of positions has one position.
     pub fn program(&self) -> Result<Program, JobError> {
-        let rules = match &self.control {
-            Some(control) => read_control(Path::new(control))?,
-            None => ControlRules::default(),
+        let content = ProgramFile::read(&self.program)?;
+        let rules = match (&self.control, &content) {
+            (Some(_), ProgramFile::Locations(_)) => return Err(JobError::MachineForPositions),
+            (Some(control), ProgramFile::Gcode(_)) => read_control(Path::new(control))?,
+            (None, ProgramFile::Gcode(text)) if rules_of(text).is_none() => {
+                return Err(JobError::NoControl { file: self.program.display().to_string() });
+            }
+            (None, _) => ControlRules::default(),
         };
         let setup = self.setup(rules, read_subprograms(&self.subprograms)?)?;
         let machine = self.machine.as_deref().map(Path::new);
-        let program = Program::read(&self.program, machine, &setup)?;
+        let program = Program::of_content(content, &self.program, machine, &setup)?;
         if let Program::Locations(programs) = &program
             && let [program] = &programs[..]
         {

@@ -8,10 +8,10 @@ use super::{
     Body, BodyFrame, BodyRole, Job, JobError, JobFileFault, JobGap, JobStock, JobTool, PART,
     StockShape,
 };
-use crate::Gap;
 use crate::gcode::WorkOffset;
 use crate::machine::{BodyShape, Machine};
 use crate::stock::RemainingPoints;
+use crate::{Gap, GapWeight};
 use nalgebra::{Point3, Vector3};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -273,8 +273,17 @@ impl<T: AsRef<dyn Tool>> JobInputs<T> {
         if left.any(|other| other != first) {
             return Err(refused(JobFileFault::SeveralStocks));
         }
-        let gap = (report.verdict() != Verdict::Clean)
-            .then(|| JobGap::EarlierSetup { file: name() }.open(0));
+        let gap = match report.verdict() {
+            Verdict::Clean => None,
+            verdict => {
+                let mut gap = JobGap::EarlierSetup { file: name() }.open(0);
+                // A violation is not left open, so `anyway` does not accept it.
+                if verdict == Verdict::Findings {
+                    gap.weight = GapWeight::Stops;
+                }
+                Some(gap)
+            }
+        };
         let own = inputs.files().into_iter();
         let files = own.map(|(role, file)| (format!("{}: {role}", name()), file.to_owned()));
         Ok(EarlierSetup { remaining: first, files: files.collect(), gap })

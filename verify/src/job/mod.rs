@@ -32,7 +32,7 @@ pub use report::{
 pub use stock::{CutStock, StockFinding};
 
 use crate::codes::faults;
-use crate::gcode::{BlockLine, ControlError, WorkOffset};
+use crate::gcode::{BlockLine, ControlError, ControlRules, GENERIC, WorkOffset};
 use crate::machine::{JointError, Letter, Link, MAX_NAME, Machine, MachineError, Side};
 use crate::program::ProgramError;
 use crate::stock::{RemainingPoints, Stock, StockError};
@@ -47,6 +47,8 @@ use touchoff::{Mesh, ParseUnitError, PoseError, Tool, Unit};
 
 /// The name of the part in findings.
 pub const PART: &str = "the part";
+/// Name of the stock in findings.
+pub(crate) const STOCK: &str = "the stock";
 
 /// A program with its tools, against the part, fixtures and stock.
 ///
@@ -531,7 +533,25 @@ faults! {
             /// The length, in mm.
             length: f64,
         },
+        /// A G-code program without a control.
+        ///
+        /// Controls read one program in different ways, and a verdict holds for the one that reads it.
+        #[code = J0135]
+        #[error(
+            "{file}: state the control that reads it, by `--control NAME` or by `control` in the job: {}, `{GENERIC}` for what holds on \
+             each of these, or a file (`touchoff controls NAME` prints one)",
+            control_names()
+        )]
+        NoControl {
+            /// The program.
+            file: String,
+        },
     }
+}
+
+/// Lists the controls that are known by name.
+fn control_names() -> String {
+    ControlRules::names().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
 }
 
 /// Tells how many other comments describe another tool.
@@ -700,6 +720,20 @@ faults! {
         Setups {
             /// The largest number of set-ups.
             limit: usize,
+        },
+        /// A variable that is given twice, by two spellings of its name.
+        #[code = J0221]
+        #[error("{name} in `[variables]` is given twice: keep one of both")]
+        SecondVariable {
+            /// The name.
+            name: String,
+        },
+        /// A name that two bodies have.
+        #[code = J0222]
+        #[error("{name} is the name of two bodies: name each `[[fixture]]` and `[[other_part]]` so that findings tell them apart")]
+        SecondBody {
+            /// The name.
+            name: String,
         },
     }
 }

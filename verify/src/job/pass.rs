@@ -6,7 +6,7 @@ use super::machine::MachineFinding;
 use super::program::BlockMoves;
 use super::report::{JobReport, Moving, PairReport, Remedy};
 use super::stock::{CutStock, StockCut};
-use super::{Body, BodyFrame, BodyRole, Job, JobError, JobGap, JobTool, StockShape};
+use super::{Body, BodyFrame, BodyRole, Job, JobError, JobGap, JobTool, STOCK, StockShape};
 use crate::check::{ApproachSearch, MoveCheck, MoveRequest};
 use crate::gcode::{BlockLine, WorkOffset};
 use crate::machine::{Axis, Link, Machine, Side};
@@ -187,7 +187,7 @@ impl<'a> Job<'a> {
             Some((&*body.name, self.height_above(body, way)? + margin))
         });
         let stock =
-            stock.map(|bounds| ("the stock", top(part, bounds) - part.height / unit.millimetres()));
+            stock.map(|bounds| (STOCK, top(part, bounds) - part.height / unit.millimetres()));
         let highest = bodies.chain(stock).max_by(|one, other| one.1.total_cmp(&other.1));
         highest.filter(|(_, height)| *height > least).map(|(name, _)| name)
     }

@@ -75,14 +75,27 @@ impl Program {
         machine: Option<&Path>,
         setup: &ControlSetup,
     ) -> Result<Program, JobError> {
+        Program::of_content(ProgramFile::read(file)?, file, machine, setup)
+    }
+
+    /// Makes the program of a file that was read, as [`Program::read`] does.
+    ///
+    /// # Errors
+    /// As for [`Program::read`].
+    pub(super) fn of_content(
+        content: ProgramFile,
+        file: &Path,
+        machine: Option<&Path>,
+        setup: &ControlSetup,
+    ) -> Result<Program, JobError> {
         let is_plain = machine.is_none() && setup.rules == ControlRules::default();
-        match (ProgramFile::read(file)?, is_plain) {
-            (ProgramFile::Gcode(text), _) => {
+        match content {
+            ProgramFile::Gcode(text) => {
                 let machine = read_machine(machine.unwrap_or(Path::new(DEFAULT_MACHINE)))?;
                 Program::gcode(&file.display().to_string(), text, machine, setup)
             }
-            (ProgramFile::Locations(programs), true) => Ok(Program::Locations(programs)),
-            (ProgramFile::Locations(_), false) => Err(JobError::MachineForPositions),
+            ProgramFile::Locations(programs) if is_plain => Ok(Program::Locations(programs)),
+            ProgramFile::Locations(_) => Err(JobError::MachineForPositions),
         }
     }
 

@@ -185,7 +185,7 @@ impl JobReport<'_> {
         });
         let mut reasons: Vec<NoVerdict> = open
             .map(|gap| match gap.weight {
-                GapWeight::Stops => NoVerdict::Unread {
+                GapWeight::Stops if gap.line > 0 => NoVerdict::Unread {
                     program: self.job.program.name().to_owned(),
                     gap: gap.clone(),
                 },

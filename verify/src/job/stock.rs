@@ -1,6 +1,6 @@
 //! The program against the material that is still there.
 
-use super::{Job, JobError, JobGap, JobStock, JobTool};
+use super::{Job, JobError, JobGap, JobStock, JobTool, STOCK};
 use crate::Move;
 use crate::gcode::BlockLine;
 use crate::stock::{self, DeviationPoint, MotionMode, Stock, StockContact};
@@ -205,7 +205,7 @@ impl StockFinding {
             motions: self.motions,
             rapid: self.rapid,
             unit: unit.symbol(),
-            body: "the stock",
+            body: STOCK,
             tool: &self.tool,
             tool_number: self.tool_number,
             kind: "stock",

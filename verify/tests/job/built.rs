@@ -488,8 +488,10 @@ fn compensation_mills_to_the_radius_of_the_job() {
     for control in ["linuxcnc", "fanuc", "haas", "siemens"] {
         assert_eq!(deepest(&of_tool.replace("linuxcnc", control)).expect(control), []);
     }
-    // Without a control, both forms of corners and all first motions are readings.
-    let any = of_tool.replace("control = \"linuxcnc\"\n", "");
+    let unstated = of_tool.replace("control = \"linuxcnc\"\n", "");
+    assert_eq!(deepest(&unstated).expect_err("no control").code(), "J0135");
+    // On any control, both forms of corners and all first motions are readings.
+    let any = of_tool.replace("linuxcnc", "generic");
     assert_eq!(deepest(&any).expect("a verdict"), []);
     let readings = read(&any).and_then(|file| file.program()).expect("a program").reading_count();
     assert_eq!(readings, 6);

@@ -245,6 +245,8 @@ fn a_stock_is_what_an_earlier_set_up_leaves() {
         folder.write("op10.toml", earlier);
         folder.gives(&text("op20", turned), NONE, &[pattern]);
     }
+    // Findings are not left open, so nothing accepts them.
+    folder.gives(&format!("anyway = true\n{}", text("op20", turned)), NONE, &["V0605"]);
 }
 
 /// Each set-up takes a part of the stack while those before it are read.
@@ -602,6 +604,14 @@ fn a_wrong_job_is_refused_with_its_key() {
         (["[tool.1]", "[tool.\"+1\"]"], "J0206 `+1`"),
         (["[tool.1]", "[tool.TT1]"], "J0206 `TT1`"),
         (["[stock]", "[presets]\n1 = \"G54\"\n01 = \"G55\"\n[stock]"], "J0212 `1`"),
+        (["[stock]", "[variables]\n\"#500\" = 1\n\"0500\" = 2\n[stock]"], "J0221 #500"),
+        (["[stock]", "[variables]\n\"#<_d>\" = 1\n\"#< _D >\" = 2\n[stock]"], "J0221 #<_d>"),
+        (["[stock]", "[variables]\nR1 = 1\nr01 = 2\n[stock]"], "J0221 R1"),
+        (["[stock]", "[variables]\nQL1 = 1\nql01 = 2\n[stock]"], "J0221 QL1"),
+        (["[stock]", "[variables]\n\"#+500\" = 1\n[stock]"], "J0205 `#+500`"),
+        (["[stock]", "[ignore]\nM05 = \"it stops nothing\"\n[stock]"], "K0504 M05"),
+        (["the vise", "the part"], "J0222 the part"),
+        (["the vise", "the stock"], "J0222 the stock"),
         (["A-C trunnion", "A-D trunnion"], "K0201 `A-D trunnion with bodies`"),
         (["A-C trunnion with bodies", "none.toml"], "J0101 none.toml"),
         (["moves_with = \"C\"", "moves_with = \"B\""], "J0122"),

@@ -6,6 +6,7 @@ use super::plain;
 use crate::postures::picture::describe;
 use crate::program::ignored_words;
 use maud::{Markup, html};
+use touchoff_verify::gcode::GENERIC;
 use touchoff_verify::machine::Machine;
 use touchoff_verify::{Program, Verifier};
 
@@ -98,9 +99,12 @@ fn motions(content: &Content<'_>) -> Vec<String> {
         }
         Program::Machine(readings) => {
             let control = match &inputs.file.control {
+                Some(control) if control.to_str() == Some(GENERIC) => {
+                    "No control is named: what every control does that is known is checked."
+                        .to_owned()
+                }
                 Some(control) => format!("Control: {}.", control.display()),
-                None => "No control is named: what every control does that is known is checked."
-                    .to_owned(),
+                None => "Control: that whose language the program has.".to_owned(),
             };
             lines.push(format!(
                 "Machine: {}. {control} Between two blocks the control interpolates its axes. G54 is the frame of the part.",

@@ -459,7 +459,7 @@ pub struct Gap {
 /// The consequence of a gap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum GapWeight {
-    /// The program is not read to its end. There is no verdict, whatever a job accepts.
+    /// There is no verdict, whatever a job accepts: the program is not read to its end, or the set-up before it has findings.
     Stops,
     /// There is no verdict unless a job accepts it: a collision could be missed that the program alone makes.
     Open,

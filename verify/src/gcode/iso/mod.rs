@@ -31,9 +31,9 @@ use std::mem;
 use structure::{Clause, Structure, Subprogram};
 use variables::{Locals, Parameter, Scope, Variables};
 
-/// Returns whether a name is that of a variable: `#500`, or `#<_depth>`.
-pub(crate) fn is_variable(name: &str) -> bool {
-    Parameter::declared(name).is_some()
+/// Returns the name of a variable in one spelling: `#500`, or `#<_depth>`.
+pub(crate) fn variable_name(text: &str) -> Option<String> {
+    Parameter::declared(text).map(|parameter| parameter.shown())
 }
 
 /// A program, and the place of its execution.

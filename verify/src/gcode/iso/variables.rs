@@ -50,7 +50,10 @@ impl Parameter {
             Some(name) => {
                 Some(named(name)).filter(|named| *named != Parameter::Named(String::new()))
             }
-            None => text.parse().ok().filter(|number| *number > 0).map(Parameter::Numbered),
+            None => {
+                let is_whole = text.bytes().all(|byte| byte.is_ascii_digit());
+                text.parse().ok().filter(|number| is_whole && *number > 0).map(Parameter::Numbered)
+            }
         }
     }
 }

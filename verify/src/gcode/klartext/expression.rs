@@ -12,9 +12,9 @@ use crate::machine::sin_cos_degrees;
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// Returns whether a name is that of a Q parameter.
-pub(crate) fn is_variable(name: &str) -> bool {
-    Parameter::named(name).is_some()
+/// Returns the name of a Q parameter in one spelling.
+pub(crate) fn variable_name(text: &str) -> Option<String> {
+    Parameter::named(text).map(|parameter| parameter.to_string())
 }
 
 /// Largest nesting of brackets and functions.

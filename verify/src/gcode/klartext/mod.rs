@@ -26,7 +26,7 @@ use super::{ControlSetup, GcodeError, GcodeFault, Repeated, SubprogramFile, show
 use block::{Feed, Scale, Words, m_entry};
 use cycle::Cycle;
 pub(super) use cycle::is_ignorable;
-pub(crate) use expression::is_variable;
+pub(crate) use expression::variable_name;
 use expression::{Parameters, angle, finite, formula, parameter, value};
 use flow::{Flow, Label, label};
 use frame::Frame;

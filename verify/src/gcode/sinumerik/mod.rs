@@ -31,7 +31,7 @@ use std::mem;
 use std::sync::Arc;
 pub(super) use table::has_effect;
 use text::{Cursor, Start, start};
-pub(crate) use variables::is_variable;
+pub(crate) use variables::variable_name;
 use variables::{Reference, Variables};
 
 /// Meaning of native programs on every Sinumerik, whatever a control's file says about programs in ISO mode.

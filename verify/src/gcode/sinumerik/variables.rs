@@ -74,9 +74,9 @@ pub(super) struct Variables {
     elements: usize,
 }
 
-/// Returns whether a name is that of an R parameter.
-pub(crate) fn is_variable(name: &str) -> bool {
-    r_index(name).is_some()
+/// Returns the name of an R parameter in one spelling.
+pub(crate) fn variable_name(text: &str) -> Option<String> {
+    r_index(text).map(|index| format!("R{index}"))
 }
 
 /// Returns the index of an R parameter by its name.
