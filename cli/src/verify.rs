@@ -188,7 +188,7 @@ pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure>
     let inputs = read(file, sarif.as_deref().as_slice(), job.as_deref().as_slice(), verbose)?;
     let job = inputs.job();
     let report = check(&job, json)?;
-    print_verdict(&report);
+    message!("{}", report.headline());
     let mut out = Output::rows();
     for (count, finding) in report.findings().iter().enumerate() {
         if json {
@@ -233,38 +233,6 @@ fn style(severity: Severity) -> Style {
         Severity::Remark => AnsiColor::Cyan,
     };
     color.on_default().bold()
-}
-
-/// Returns the numbers of violations, of undecided findings and of remarks.
-pub(crate) fn finding_counts(report: &JobReport<'_>) -> [usize; 3] {
-    [Severity::Violation, Severity::Undecided, Severity::Remark].map(|severity| {
-        report.findings().iter().filter(|finding| finding.severity == severity).count()
-    })
-}
-
-/// Prints the verdict with the numbers of findings, in a line.
-pub(crate) fn print_verdict(report: &JobReport<'_>) {
-    let nouns = ["violation", "undecided finding", "remark"];
-    let counts = finding_counts(report).into_iter().zip(nouns).filter(|(count, _)| *count > 0);
-    let counts = counts.map(|(count, noun)| match count {
-        1 => format!("1 {noun}"),
-        _ => format!("{count} {noun}s"),
-    });
-    let counts = counts.collect::<Vec<_>>().join(", ");
-    let separator = if counts.is_empty() { "" } else { "; " };
-    match report.verdict() {
-        Verdict::Findings => message!("findings: {counts}"),
-        Verdict::Clean if report.gaps.is_empty() => {
-            message!("no findings: {}{separator}{counts}", Verdict::Clean);
-        }
-        Verdict::Clean => {
-            message!(
-                "no findings: {}, but for what is not checked{separator}{counts}",
-                Verdict::Clean
-            );
-        }
-        Verdict::None => message!("{}{separator}{counts}", Verdict::None),
-    }
 }
 
 /// Prints the reasons for which there is no verdict, what was not checked, and, if `verbose` is set, what was read and how near the tools

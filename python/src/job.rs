@@ -9,8 +9,8 @@ use pyo3::types::{PyBool, PyDict, PyInt, PyList};
 use serde::Serialize;
 use std::path::PathBuf;
 use touchoff_import::Libraries;
+use touchoff_verify::JobFile;
 use touchoff_verify::job::{JobError, JobInputs};
-use touchoff_verify::{JobFile, Verdict};
 
 /// A reason for which a job is not checked.
 #[derive(Debug, thiserror::Error)]
@@ -36,20 +36,12 @@ fn without_line(error: JobError) -> CheckError {
 #[derive(Serialize)]
 struct Checked<R: Serialize, G: Serialize, S: Serialize> {
     verdict: &'static str,
-    findings: Vec<FindingRow<R>>,
+    findings: Vec<R>,
     gaps: Vec<G>,
     refusals: Vec<String>,
     summaries: Vec<String>,
     surface_only: bool,
     sarif: S,
-}
-
-#[derive(Serialize)]
-struct FindingRow<R: Serialize> {
-    /// The sentence.
-    text: String,
-    #[serde(flatten)]
-    row: R,
 }
 
 /// Returns a value of a job as TOML has it. `key` is its place, such as `tool.1.allow.ball`.
@@ -126,16 +118,8 @@ pub(crate) fn check_job(
         let job = inputs.job();
         let report = job.check(&|_| ())?;
         let checked = Checked {
-            verdict: match report.verdict() {
-                Verdict::Clean => "clean",
-                Verdict::Findings => "findings",
-                Verdict::None => "none",
-            },
-            findings: report
-                .findings()
-                .iter()
-                .map(|finding| FindingRow { text: finding.text.clone(), row: report.row(finding) })
-                .collect(),
+            verdict: report.verdict().keyword(),
+            findings: report.findings().iter().map(|finding| report.row(finding)).collect(),
             gaps: report.gap_rows().collect(),
             refusals: report.refusals().iter().map(ToString::to_string).collect(),
             summaries: report.summaries(),

@@ -11,8 +11,8 @@ const AROUND = 2;
 /** Index of the tool's number in a state, which is -1 without one. */
 const NUMBER = 15;
 
-/** @typedef {{kind: string, name: string | null, span: number[], rapid: boolean, measured: number[] | null, limit: number | null, point: number[] | null, triangle: number, axis: number[]}} Surface */
-/** @typedef {{severity: string, text: string, number: number | null, through: boolean, lines: number[], at: number | null, surface: Surface | null}} Finding */
+/** Consecutive motions of a finding, in the reading that is shown. @typedef {{line: number, at: number, span: number[], surface: string | null, point: number[] | null, triangle: number, axis: number[]}} Place */
+/** @typedef {{severity: string, text: string, line: number, tool_number: number | null, at: number | null, places: Place[]}} Finding */
 
 export class ProgramView {
   /**
@@ -62,8 +62,8 @@ export class ProgramView {
     id('machine').addEventListener('change', () => this.#read({ program: true }));
     id('close-program').addEventListener('click', () => this.close());
     id('timeline').addEventListener('click', (event) => {
-      const finding = this.timeline.findingAt(event.offsetX, event.offsetY);
-      if (finding) this.show(finding);
+      const found = this.timeline.findingAt(event.offsetX, event.offsetY);
+      if (found) this.show(found.finding, found.place);
       else this.seek(this.timeline.positionAt(event.offsetX));
     });
   }
@@ -239,16 +239,16 @@ export class ProgramView {
       this.done += count;
       id('verdict').textContent = `checking: ${Math.min(this.done, this.last + 1)} of ${this.last + 1} motions`;
     },
-    result: ({ result, tolerance, milliseconds }) => {
-      this.timeline.setResult(result.findings, tolerance);
+    result: ({ result: { verdict, findings, motions, stock }, tolerance, milliseconds }) => {
+      this.timeline.setResult(findings, tolerance);
       const seconds = (milliseconds / 1000).toFixed(1);
-      const [text, kind] = verdict(result);
-      id('verdict').textContent = `${text} (${result.motions} motions, proved in ${seconds} s)`;
-      id('verdict').className = kind;
-      id('program-notes').textContent = [...this.facts.notes, result.stock].filter(Boolean).join('\n');
+      id('verdict').textContent = `${verdict.text} (${motions} motions, checked in ${seconds} s)`;
+      id('verdict').className = { clean: 'good', findings: 'bad' }[verdict.verdict] ?? 'open';
+      const reasons = verdict.reasons.map((reason) => `not verified: ${reason}`);
+      id('program-notes').textContent = [...reasons, ...this.facts.notes, stock].filter(Boolean).join('\n');
       id('findings').hidden = false;
-      id('findings-list').replaceChildren(...rowsOf(result.findings).map((row) => this.#row(row)));
-      id('canvas').dataset.findings = String(result.findings.length);
+      id('findings-list').replaceChildren(...findings.map((finding) => this.#row(finding)));
+      id('canvas').dataset.findings = String(findings.length);
     },
     stock: ({ positions }) => {
       if (this.file) this.scene.setStock(positions);
@@ -289,14 +289,19 @@ export class ProgramView {
     this.worker.postMessage({ kind: 'at', position });
   }
 
-  /** Shows a finding, and looks at it. */
-  async show({ at, number, surface }) {
+  /**
+   * Shows a place of a finding, and looks at it.
+   * @param {Finding} finding
+   * @param {Place | undefined} place
+   */
+  async show({ at, tool_number: number }, place) {
     this.#play(false);
-    if (at !== null) this.seek(at);
-    if (!surface?.point) return;
+    const position = place?.at ?? at;
+    if (position !== null) this.seek(position);
+    if (!place?.point) return;
     // The distance of the view depends on the tool.
     await this.page.show(/** @type {string} */ (this.tools.get(number)));
-    this.scene.lookAt(surface.point, surface.triangle, surface.axis, surface.name);
+    this.scene.lookAt(place.point, place.triangle, place.axis, place.surface);
   }
 
   #play(on) {
@@ -348,84 +353,27 @@ export class ProgramView {
   }
 
   /**
-   * Makes a row of the list. Of several findings, each click shows the next.
-   * @param {Finding[]} findings
+   * Makes a row of the list. Of several places, each click shows the next.
+   * @param {Finding} finding
    */
-  #row(findings) {
-    const button = document.createElement('button');
-    button.className = findings[0].severity;
-    const name = document.createElement('b');
-    name.textContent = this.#name(findings);
+  #row(finding) {
+    const { severity, line, text, places } = finding;
+    const [button, name, sentence] = ['button', 'b', 'span'].map((tag) => document.createElement(tag));
+    button.className = severity;
+    name.textContent = `line ${line}`;
+    sentence.textContent = text;
+    button.append(name, sentence);
     let shown = -1;
-    const lines = document.createElement('span');
-    lines.textContent = describeLines(findings);
-    button.append(name, lines);
     button.addEventListener('click', () => {
-      shown = (shown + 1) % findings.length;
-      this.show(findings[shown]);
-      if (findings.length > 1) lines.textContent = `${shown + 1} of ${findings.length}: ${this.#name([findings[shown]])}, ${describeLines([findings[shown]])}`;
+      shown = (shown + 1) % Math.max(places.length, 1);
+      this.show(finding, places[shown]);
+      if (places.length > 1) name.textContent = `${shown + 1} of ${places.length}: line ${places[shown].line}`;
     });
     const item = document.createElement('li');
     item.append(button);
     return item;
   }
-
-  /** @param {Finding[]} findings */
-  #name(findings) {
-    const [{ surface, text, number }] = findings;
-    const tool = this.#ofTool(number).map((name) => `${name} `).join('');
-    if (findings.length > 1) return `${tool}right through or inside the part: ${findings.length} findings`;
-    if (!surface) return text;
-    const { kind, name, measured } = surface;
-    const amount = measured && kind !== 'right through' ? ` ${this.#length(measured[1])}` : '';
-    return `${tool}${name ?? 'tool'}: ${kind === 'near' ? 'distance' : kind}${amount}`;
-  }
 }
 
 /** Returns the name of a number of a program. */
 const nameOf = (number) => (number === null ? 'before the first tool' : `T${number}`);
-
-/**
- * Joins the findings that are one row of the list: those of a tool that goes right through the part or is inside it. Rows are in the
- * order of their first findings.
- * @param {Finding[]} findings
- * @returns {Finding[][]}
- */
-function rowsOf(findings) {
-  const rows = [];
-  /** @type {Map<number | null, Finding[]>} */
-  const through = new Map();
-  for (const finding of findings) {
-    const row = finding.through ? through.get(finding.number) : null;
-    if (row) {
-      row.push(finding);
-    } else {
-      rows.push([finding]);
-      if (finding.through) through.set(finding.number, rows.at(-1));
-    }
-  }
-  return rows;
-}
-
-/** @param {Finding[]} findings */
-function describeLines(findings) {
-  const [{ lines: [worst], surface }] = findings;
-  const [first, last] = [Math.min(...findings.map(({ lines }) => lines[1])), Math.max(...findings.map(({ lines }) => lines[2]))];
-  const lines = first === last ? `line ${worst}` : `lines ${first} to ${last}, worst ${worst}`;
-  return `${lines}${surface?.rapid ? ', rapid traverse' : ''}`;
-}
-
-/**
- * Returns the verdict on a program and its class. Like that of `touchoff verify`, it is not good where the result proves
- * nothing.
- * @returns {[string, string]}
- */
-function verdict({ findings, open, clear, inside_known: known, far, unit_factor: factor }) {
-  const { length } = findings.filter(({ severity }) => severity !== 'note');
-  if (length) return [`${length} finding${length === 1 ? '' : 's'}`, 'bad'];
-  if (!known) return ['no findings at the surface; the part is not closed, so a tool inside it is not found', 'open'];
-  if (open.length) return [`no findings in what was checked; ${open.join('; ')}`, 'open'];
-  if (factor) return [`no findings, but all feed lies outside the part, and would fit if it were ${factor} times as large: check the units`, 'open'];
-  if (far) return ['no findings, but the tool never comes near the part: check unit and position', 'open'];
-  return clear ? ['no findings', 'good'] : ['no findings, but nothing could have been found', 'open'];
-}

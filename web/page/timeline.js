@@ -23,14 +23,14 @@ export class Timeline {
     this.unit = 'mm';
     /** @type {number[][]} position, depth and clearance */
     this.samples = [];
-    /** @type {import('./program.js').Finding[]} */
-    this.findings = [];
+    /** The worst first. @type {{finding: import('./program.js').Finding, place: import('./program.js').Place}[]} */
+    this.places = [];
     new ResizeObserver(() => this.draw()).observe(canvas);
   }
 
   /** Begins with another program. */
   reset(last, { unit, millimetres }) {
-    Object.assign(this, { last, unit, cursor: 0, samples: [], findings: [], far: FAR / millimetres });
+    Object.assign(this, { last, unit, cursor: 0, samples: [], places: [], far: FAR / millimetres });
     this.draw();
   }
 
@@ -40,8 +40,8 @@ export class Timeline {
   }
 
   setResult(findings, tolerance) {
-    // Findings with a place in the program.
-    Object.assign(this, { findings: findings.filter(({ surface }) => surface), tolerance });
+    const places = findings.flatMap((finding) => finding.places.map((place) => ({ finding, place })));
+    Object.assign(this, { places, tolerance });
     this.draw();
   }
 
@@ -62,7 +62,7 @@ export class Timeline {
   /** Returns the finding below a place of the canvas: of several, the worst. */
   findingAt(x, y) {
     if (y < LANES[0] - 3 || y > LANES[0] + LANES[1] + 3) return null;
-    return this.findings.find(({ surface: { span: [first, last] } }) => this.#x(first - 1) - 3 <= x && x <= this.#x(last) + 3) ?? null;
+    return this.places.find(({ place: { span: [first, last] } }) => this.#x(first - 1) - 3 <= x && x <= this.#x(last) + 3) ?? null;
   }
 
   draw() {
@@ -109,8 +109,7 @@ export class Timeline {
     }
 
     // The worst comes last, on top.
-    for (const finding of [...this.findings].reverse()) {
-      const [first, last] = finding.surface.span;
+    for (const { finding, place: { span: [first, last] } } of [...this.places].reverse()) {
       const from = this.#x(Math.max(first - 1, 0));
       context.fillStyle = finding.severity === 'violation' ? BAD : OPEN;
       context.fillRect(from, top + 1, Math.max(this.#x(last) - from, 2), middle - 2);

@@ -9,13 +9,12 @@ use serde::Serialize;
 use std::fmt;
 use std::rc::Rc;
 use touchoff::certify::{Certifier, TriangleBvh};
-use touchoff::tool::{Interpreted, ToolInfo};
+use touchoff::tool::Interpreted;
 use touchoff::{Mesh, Pose, SurfaceId, Tool};
-use touchoff_verify::job::{FindingDetail, JobFinding, PairReport, Severity};
+use touchoff_verify::job::{FindingDetail, JobFinding};
 use touchoff_verify::machine::Machine;
 use touchoff_verify::{
-    Finding, FindingGroup, FindingKind, Job, JobReport, JobTool, Move, Program, ToolSelection,
-    VerifyError,
+    Finding, FindingKind, Job, JobReport, JobTool, Move, Program, ToolSelection, VerifyError,
 };
 use wasm_bindgen::prelude::{JsError, wasm_bindgen};
 
@@ -200,7 +199,7 @@ impl Checker {
     /// # Errors
     /// Fails without motions, for an invalid tolerance, and for a tool that cannot be certified.
     pub fn check(&self, tolerance: f64) -> Result<String, JsError> {
-        Ok(serde_json::to_string(&self.verified(tolerance)?)?)
+        Ok(self.checked(tolerance)??)
     }
 
     /// Returns the state at a position of the program, from 0 to the number of motions less 1; the fraction is that of the
@@ -261,7 +260,7 @@ impl Checker {
         Ok(played.at() >= position)
     }
 
-    fn verified(&self, tolerance: f64) -> Result<CheckResult, EngineError> {
+    fn checked(&self, tolerance: f64) -> Result<serde_json::Result<String>, EngineError> {
         let program = self.program.as_ref().filter(|_| !self.moves.is_empty());
         let (Some(bvh), Some(program)) = (&self.bvh, program) else {
             return Err(EngineError::NotLoaded);
@@ -274,7 +273,7 @@ impl Checker {
         }));
         job.tolerance = tolerance;
         job.stock = self.stock.map(stock::of_job);
-        Ok(CheckResult::of(&job.check(&checked_motions)?, &self.moves))
+        Ok(to_json(&job.check(&checked_motions)?, &self.moves))
     }
 
     fn state_at(&mut self, position: f64) -> Result<Vec<f64>, EngineError> {
@@ -312,56 +311,36 @@ fn bounds(pair: &Pair, certifier: &mut Certifier<'_>, pose: &Pose) -> [f64; 6] {
 }
 
 /// The result of a check.
-#[derive(Debug, Serialize)]
-struct CheckResult {
+#[derive(Serialize)]
+struct CheckResult<V: Serialize, F: Serialize> {
     motions: usize,
-    /// `true` if it is proved that nothing is deeper than allowed on the motions that were checked, in every reading of the program.
-    clear: bool,
-    /// `false` if the part has no inside, so that a tool wholly inside it is not found.
-    inside_known: bool,
-    /// `true` if every tool stays farther from the part than its diameter.
-    far: bool,
-    /// The factor by which all positions in feed, outside the part's box, would fit into it.
-    unit_factor: Option<f64>,
+    verdict: V,
     /// All findings: violations, then what is undecided, then remarks; the worst of each first.
-    findings: Vec<FindingRow>,
-    /// Sentences about what allows no verdict.
-    open: Vec<String>,
+    findings: Vec<PlacedFinding<F>>,
     /// A sentence about the stock, if there is one.
     stock: Option<String>,
 }
 
-/// A finding of a job.
-#[derive(Clone, Debug, Serialize)]
-struct FindingRow {
-    severity: &'static str,
-    /// The sentence.
-    text: String,
-    /// Number of the tool in the program, of a finding of a surface.
-    number: Option<u32>,
-    /// `true` if a surface goes right through the part or is inside it.
-    through: bool,
-    /// Line of the worst, of the first and of the last motion.
-    lines: [usize; 3],
+/// A finding with its places in the program, in the reading that is shown.
+#[derive(Serialize)]
+struct PlacedFinding<F: Serialize> {
+    #[serde(flatten)]
+    row: F,
     /// Position of the worst in the program: the index of the cutter location before it, and the fraction of the motion. `None` if
     /// no motion has its line.
     at: Option<f64>,
-    /// Details of a finding of a surface at the part, in the reading that is shown.
-    surface: Option<SurfaceRow>,
+    /// The consecutive motions of a surface of a tool.
+    places: Vec<Place>,
 }
 
-/// A finding of a surface of the tool at the part, on consecutive motions.
-#[derive(Clone, Debug, Serialize)]
-struct SurfaceRow {
-    kind: &'static str,
-    name: Option<String>,
+/// Consecutive motions with a finding of a surface of a tool.
+#[derive(Debug, Serialize)]
+struct Place {
+    line: usize,
+    at: f64,
     /// Indices of the cutter locations at which the first and the last motion end.
     span: [usize; 2],
-    rapid: bool,
-    /// Proved bounds of depth or distance at the worst.
-    measured: Option<[f64; 2]>,
-    /// The allowed depth, or the margin.
-    limit: Option<f64>,
+    surface: Option<String>,
     /// The point of the part, and its triangle.
     point: Option<[f64; 3]>,
     triangle: Option<u32>,
@@ -369,134 +348,66 @@ struct SurfaceRow {
     axis: [f64; 3],
 }
 
-impl CheckResult {
-    /// Summarises the check of tools at the part. `moves` are their motions in the first reading, in the order of the program.
-    fn of(report: &JobReport<'_>, moves: &[Move]) -> CheckResult {
-        let motions_of: Vec<Vec<usize>> = report
-            .job
-            .tools
-            .iter()
-            .map(|tool| {
-                let own = moves.iter().enumerate();
-                let own = own.filter(|(_, step)| tool.motions.contains(step.tool));
-                own.map(|(index, _)| index).collect()
-            })
-            .collect();
-        let findings: Vec<FindingRow> = report
-            .findings()
-            .iter()
-            .flat_map(|finding| FindingRow::all(report, finding, moves, &motions_of))
-            .collect();
-        let at_part = || report.tools_at_part().map(|pair| &pair.report);
-        CheckResult {
-            motions: at_part().map(|report| report.motions).sum(),
-            clear: report.pairs.iter().all(|pair| pair.report.is_clear()),
-            inside_known: at_part().all(|report| report.inside_known),
-            far: at_part().all(|report| report.approach.is_far()),
-            unit_factor: at_part().find_map(|report| report.approach.unit_factor),
-            findings,
-            open: report.gaps.iter().filter(|gap| gap.is_open()).map(ToString::to_string).collect(),
-            stock: report.cut().map(|cut| {
-                let (points, unit) = (&cut.stock, report.job.unit());
-                format!(
-                    "stock: {} of {} points remain, {} apart; {}",
-                    points.len(),
-                    points.initial_len(),
-                    unit.format(points.spacing()),
-                    cut.resolution()
-                )
-            }),
-        }
-    }
+/// Returns a report as JSON. `moves` are the motions of its tools in the first reading, in the order of the program.
+fn to_json(report: &JobReport<'_>, moves: &[Move]) -> serde_json::Result<String> {
+    let motions_of: Vec<Vec<usize>> = report
+        .job
+        .tools
+        .iter()
+        .map(|tool| {
+            let own = moves.iter().enumerate();
+            let own = own.filter(|(_, step)| tool.motions.contains(step.tool));
+            own.map(|(index, _)| index).collect()
+        })
+        .collect();
+    let findings = report.findings().iter().map(|finding| {
+        let places = places(report, finding, &motions_of);
+        let line = finding.lines[0];
+        let first = || moves.iter().position(|step| step.line == line).map(|index| index as f64);
+        let at = places.first().map(|place| place.at).or_else(first);
+        PlacedFinding { row: report.row(finding), at, places }
+    });
+    serde_json::to_string(&CheckResult {
+        motions: report.tools_at_part().map(|pair| pair.report.motions).sum(),
+        verdict: report.verdict_row(),
+        findings: findings.collect(),
+        stock: report.cut().map(|cut| {
+            let (points, unit) = (&cut.stock, report.job.unit());
+            format!(
+                "stock: {} of {} points remain, {} apart; {}",
+                points.len(),
+                points.initial_len(),
+                unit.format(points.spacing()),
+                cut.resolution()
+            )
+        }),
+    })
 }
 
-impl FindingRow {
-    /// Returns the rows of a finding: one per group of consecutive motions. `motions_of` has the indices of each tool's motions in `moves`.
-    fn all(
-        report: &JobReport<'_>,
-        finding: &JobFinding,
-        moves: &[Move],
-        motions_of: &[Vec<usize>],
-    ) -> Vec<FindingRow> {
-        let row = FindingRow {
-            severity: match finding.severity {
-                Severity::Violation => "violation",
-                Severity::Undecided => "undecided",
-                Severity::Remark => "note",
-            },
-            text: finding.text.clone(),
-            number: None,
-            through: false,
-            lines: [finding.line, finding.lines[0], finding.lines[1]],
-            at: None,
-            surface: None,
+/// Returns the places of a finding of a surface of a tool in the first reading. `motions_of` has the indices of each tool's motions
+/// among those of the program.
+fn places(report: &JobReport<'_>, finding: &JobFinding, motions_of: &[Vec<usize>]) -> Vec<Place> {
+    let FindingDetail::Surface { pair, groups, .. } = &finding.detail else { return Vec::new() };
+    let pair = &report.pairs[*pair];
+    let Some(index) = pair.moving.tool().filter(|_| pair.reading == 0) else { return Vec::new() };
+    let info = report.job.tools[index].tool.info();
+    // Locations count the motions of the tool.
+    let position = |location: usize| motions_of[index].get(location).copied();
+    let places = groups.iter().filter_map(|group| {
+        let Finding { line, location, time, pose, kind, .. } = group.worst;
+        let witness = match kind {
+            FindingKind::Deep { witness, .. } | FindingKind::Near { witness, .. } => Some(witness),
+            _ => None,
         };
-        let mut rows = match &finding.detail {
-            FindingDetail::Surface { pair, groups, .. } => {
-                let pair = &report.pairs[*pair];
-                let of_group = |group| row.clone().with_surface(report, pair, group, motions_of);
-                groups.iter().map(of_group).collect()
-            }
-            FindingDetail::Machine(_) | FindingDetail::Stock(_) => vec![row],
-        };
-        for row in rows.iter_mut().filter(|row| row.at.is_none()) {
-            let index = moves.iter().position(|step| step.line == row.lines[0]);
-            row.at = index.map(|index| index as f64);
-        }
-        rows
-    }
-
-    /// Adds what is known of a surface of a tool.
-    fn with_surface(
-        mut self,
-        report: &JobReport<'_>,
-        pair: &PairReport,
-        group: &FindingGroup,
-        motions_of: &[Vec<usize>],
-    ) -> FindingRow {
-        let Finding { line, location, time, kind, .. } = group.worst;
-        self.lines = [line, group.first.line, group.last.line];
-        let Some(index) = pair.moving.tool() else { return self };
-        let tool = &report.job.tools[index];
-        self.number = tool.number();
-        self.through =
-            matches!(kind, FindingKind::Inside { .. } | FindingKind::Deep { through: true, .. });
-        // Locations count the motions of the tool in the reading, of which the first is shown.
-        let locations = [location, group.first.location, group.last.location];
-        let positions = locations.map(|location| motions_of[index].get(location).copied());
-        if let (0, [Some(worst), Some(first), Some(last)]) = (pair.reading, positions) {
-            self.at = Some((worst as f64 - 1.0 + time).max(0.0));
-            self.surface = Some(SurfaceRow::of(group, tool.tool.info(), [first, last]));
-        }
-        self
-    }
-}
-
-impl SurfaceRow {
-    fn of(group: &FindingGroup, info: &ToolInfo, span: [usize; 2]) -> SurfaceRow {
-        let Finding { rapid, pose, kind, .. } = group.worst;
-        let (label, measured, limit, witness) = match kind {
-            FindingKind::Deep { allowed, depth, through, witness, .. } => {
-                let label = if through { "right through" } else { "deep" };
-                (label, Some([depth.low, depth.high]), Some(allowed), Some(witness))
-            }
-            FindingKind::Near { margin, distance, witness, .. } => {
-                ("near", Some([distance.low, distance.high]), Some(margin), Some(witness))
-            }
-            FindingKind::Inside { .. } => ("inside", None, None, None),
-            FindingKind::Undecided { .. } => ("undecided", None, None, None),
-            FindingKind::Ambiguous(_) => ("ambiguous", None, None, None),
-        };
-        SurfaceRow {
-            kind: label,
-            name: kind.surface().map(|surface| info.surface(surface).name.to_string()),
-            span,
-            rapid,
-            measured,
-            limit,
+        Some(Place {
+            line,
+            at: (position(location)? as f64 - 1.0 + time).max(0.0),
+            span: [position(group.first.location)?, position(group.last.location)?],
+            surface: kind.surface().map(|surface| info.surface(surface).name.to_string()),
             point: witness.map(|witness| witness.point.coords.into()),
             triangle: witness.map(|witness| witness.triangle.0),
             axis: pose.axis().into(),
-        }
-    }
+        })
+    });
+    places.collect()
 }

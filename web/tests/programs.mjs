@@ -35,11 +35,11 @@ for (const [name, program, number] of [['along.csv', table, undefined], ['along.
   // A ball whose tip is 0.2 below the top of the plate is 0.2 deep in it. A cut through the top face has a border, at
   // which the ball is not deeper.
   const [finding] = result.findings;
-  const { kind, name: surface, measured, limit, point, axis } = finding.surface;
-  assert.deepEqual([finding.severity, kind, surface, result.findings.length, result.clear], ['violation', 'deep', 'ball', 1, false]);
-  assert.ok(measured[0] <= DEEP && DEEP <= measured[1], measured.join());
-  assert.ok(measured[1] - measured[0] < 2e-3, measured.join());
-  assert.equal(limit, 0.01);
+  const { severity, kind, surface, depth, allowed_depth: allowed, point, places: [{ axis }] } = finding;
+  assert.deepEqual([severity, kind, surface, result.findings.length, result.verdict.verdict], ['violation', 'deep', 'ball', 1, 'findings']);
+  assert.ok(depth[0] <= DEEP && DEEP <= depth[1], depth.join());
+  assert.ok(depth[1] - depth[0] < 2e-3, depth.join());
+  assert.equal(allowed, 0.01);
   assert.ok(Math.abs(point[2]) < 1e-9);
   assert.deepEqual(axis, [0, 0, 1]);
 
@@ -57,7 +57,10 @@ for (const [name, program, number] of [['along.csv', table, undefined], ['along.
   assert.ok(above.whole[0] <= 5 && 5 <= above.whole[1], above.whole.join());
   assert.deepEqual([state(-1).tip, state(Number.NaN).tip, state(99).tip], [[-18, 0, 5], [-18, 0, 5], [-14, 0, 5]]);
   // With a tolerance above the depth nothing is found.
-  assert.ok(JSON.parse(checker.check(0.25)).clear);
+  const { verdict: { verdict, reasons }, findings } = JSON.parse(checker.check(0.25));
+  assert.deepEqual(findings.filter((found) => found.severity !== 'remark'), []);
+  // The table is proved; the G-code never starts the spindle.
+  assert.deepEqual([verdict, /never starts the spindle/.test(reasons.join())], name.endsWith('.nc') ? ['none', true] : ['clean', false], reasons.join());
 }
 
 // Two tools, each of which is 0.2 deep once: the ball that is drawn changes with the number, and findings have theirs.
@@ -69,7 +72,7 @@ refused(() => checker.takeMotions(), /T2 of the program has no tool/);
 take(2, 'ball_er16.tool');
 assert.equal(checker.takeMotions().length, 4 * 6);
 const two = JSON.parse(checker.check(0.01));
-assert.deepEqual(two.findings.map(({ number, at, surface, through }) => [number, at, surface.name, surface.span, through]).toSorted(),
+assert.deepEqual(two.findings.map(({ tool_number: number, at, surface, places: [{ span }], through }) => [number, at, surface, span, through]).toSorted(),
   [[1, 1, 'ball', [1, 2], false], [2, 4, 'cutter.ball', [4, 5], false]]);
 assert.deepEqual([1, 4].map((position) => checker.at(position)[15]), [1, 2]);
 
@@ -110,14 +113,14 @@ checker.setStock(new Float64Array());
 assert.ok(checker.cutStock(end));
 assert.equal(checker.stockPositions().length, 0);
 
-// The worst comes first, then notes. A trunnion turns by 180° while the tool is upright, which only a note says.
+// The worst comes first, then remarks. A trunnion turns by 180° while the tool is upright, which only a remark says.
 checker.readProgram(bytes('G21 G90\nT1 M6\nG43.4 H1\nG0 X-18. Y0. Z5. A0. C0.\nG1 Z-0.05 F100.\nX-16. Z-3. C180.\nG0 Z5.\nM30\n'), 'turn.nc', 'A-C trunnion');
 take(1, 'd2_ball.tool');
 checker.takeMotions();
 const { findings: sorted } = JSON.parse(checker.check(0.01));
-const ranks = sorted.map(({ severity }) => ['violation', 'undecided', 'note'].indexOf(severity));
+const ranks = sorted.map(({ severity }) => ['violation', 'undecided', 'remark'].indexOf(severity));
 assert.ok(ranks.length > 1 && ranks.at(-1) === 2 && ranks.every((rank, k) => k === 0 || rank >= ranks[k - 1]), ranks.join());
-const depths = sorted.filter(({ surface }) => surface?.kind === 'deep').map(({ surface }) => surface.measured[0]);
+const depths = sorted.filter(({ kind, through }) => kind === 'deep' && !through).map(({ depth }) => depth[0]);
 assert.deepEqual(depths, depths.toSorted((one, other) => other - one));
 
 // What proves nothing is told: a feed from a place that only the machine knows, and a program in another unit.
@@ -131,8 +134,8 @@ const inch = Array.from({ length: 9 }, (_, k) => `${25.4 * (4 * k - 16)},${25.4 
 checker.readProgram(bytes(inch), 'inch.csv', '3-axis');
 take(undefined, 'd2_ball.tool');
 checker.takeMotions();
-const far = JSON.parse(checker.check(0.01));
-assert.ok(far.far && far.clear && Math.abs(far.unit_factor * 25.4 - 1) < 1e-9, JSON.stringify(far));
+const { verdict: far } = JSON.parse(checker.check(0.01));
+assert.ok(far.verdict === 'none' && /never comes within/.test(far.reasons.join()) && /0\.0393/.test(far.reasons.join()), JSON.stringify(far));
 
 // What is refused, with its reason.
 refused(() => checker.readProgram(gcode, 'along.nc', '7-axis'), /7-axis/);

@@ -89,7 +89,7 @@ pub(crate) fn report(arguments: Report, json: bool) -> Result<ExitCode, Failure>
     let job = inputs.job();
     let checked = verify::check(&job, json)?;
     times.push(("proving the motions, and cutting the stock", check.elapsed()));
-    verify::print_verdict(&checked);
+    message!("{}", checked.headline());
     verify::print(&inputs, &checked, verbose)?;
 
     let progress = Progress::spinner("writing the report", json);

@@ -147,7 +147,7 @@ fn every_finding_has_a_row_and_a_camera() {
         assert!(row.contains(text), "{text} is not in {row}");
         assert!(row.contains(&format!("title=\"{}\"", code.trim_end_matches(']'))), "{row}");
     }
-    assert!(page.text.contains("<strong>3 violations</strong>"), "{}", page.rows().len());
+    assert!(page.text.contains("<strong>findings: 3 violations</strong>"), "{}", page.rows().len());
 
     // The part in the 3-D view is the tube, divided into smaller triangles.
     let scene = page.data("scene");
@@ -357,7 +357,7 @@ fn files_have_their_digests() {
     let options = "--unit mm --tool D2Ball --program path.csv --tolerance 0.6";
     let page = Page::write(&bench, &format!("block.stl {options}"));
     assert_eq!(page.output.status.code(), Some(0), "{}", stderr(&page.output));
-    assert!(page.text.contains("No findings: every motion is proved"), "the verdict");
+    assert!(page.text.contains("no findings: every motion is proved"), "the verdict");
     // By `sha256sum`.
     let digest = "0a6162095ff2298624b5e6ed9dc25ff4f153c49ea8898a5bee921fdc0334a57d";
     assert!(page.text.contains(digest), "the program's digest");
@@ -456,7 +456,7 @@ fn an_implausible_program_is_not_verified() {
     bench.write("far.csv", "900,0,1,0,0,1\n900,0,-0.5,0,0,1\n");
     let page = Page::write(&bench, "block.stl --unit mm --tool D2Ball --program far.csv");
     assert_eq!(page.output.status.code(), Some(2), "{}", stderr(&page.output));
-    assert!(page.text.contains("<strong>Not verified</strong>"), "the verdict");
+    assert!(page.text.contains("<strong>no verdict: "), "the verdict");
     assert!(page.text.contains("never comes within the tool's diameter"), "the reason");
 }
 

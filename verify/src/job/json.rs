@@ -20,6 +20,16 @@ impl JobReport<'_> {
         FindingRow::of(self, finding)
     }
 
+    /// Returns the verdict as an object for JSON.
+    pub fn verdict_row(&self) -> impl Serialize {
+        let reasons = self.refusals().into_iter();
+        VerdictRow {
+            verdict: self.verdict().keyword(),
+            text: self.headline(),
+            reasons: reasons.map(|reason| format!("{reason} [{}]", reason.code())).collect(),
+        }
+    }
+
     /// Returns what is left open as objects for JSON.
     pub fn gap_rows(&self) -> impl Iterator<Item = impl Serialize + '_> {
         self.gaps.iter().map(|gap| GapRow {
@@ -39,11 +49,24 @@ impl JobReport<'_> {
     }
 }
 
+/// The verdict as a JSON object.
+#[derive(Serialize)]
+struct VerdictRow {
+    verdict: &'static str,
+    /// The sentence, with the numbers of findings.
+    text: String,
+    /// The reasons for which there is none.
+    reasons: Vec<String>,
+}
+
 /// A finding as a JSON object.
 #[derive(Serialize)]
 struct FindingRow<'a> {
     /// The code of the rule.
     code: &'static str,
+    severity: &'static str,
+    /// The sentence.
+    text: &'a str,
     #[serde(flatten)]
     kind: KindRow<'a>,
     /// The line of the worst motion in the file of subprograms that has it.
@@ -81,7 +104,14 @@ impl<'a> FindingRow<'a> {
             FindingDetail::Stock(finding) => KindRow::Stock(finding.row(file, report.job.unit())),
         };
         let within = SubprogramRow::of(report, finding.within);
-        FindingRow { code: finding.rule.code(), kind, within, under: finding.under.as_deref() }
+        FindingRow {
+            code: finding.rule.code(),
+            severity: finding.severity.keyword(),
+            text: &finding.text,
+            kind,
+            within,
+            under: finding.under.as_deref(),
+        }
     }
 }
 

@@ -32,6 +32,17 @@ impl fmt::Display for Verdict {
     }
 }
 
+impl Verdict {
+    /// Returns its word in JSON.
+    pub fn keyword(self) -> &'static str {
+        match self {
+            Verdict::Clean => "clean",
+            Verdict::Findings => "findings",
+            Verdict::None => "none",
+        }
+    }
+}
+
 /// The changes that clear the worst motion of a group of findings at its pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -156,6 +167,36 @@ impl JobReport<'_> {
             false => Verdict::None,
             true if has(Severity::Undecided) => Verdict::Findings,
             true => Verdict::Clean,
+        }
+    }
+
+    /// Returns the verdict with the numbers of findings, in a line without a full stop.
+    pub fn headline(&self) -> String {
+        let nouns = [
+            (Severity::Violation, "violation"),
+            (Severity::Undecided, "undecided finding"),
+            (Severity::Remark, "remark"),
+        ];
+        let counts = nouns.into_iter().filter_map(|(severity, noun)| {
+            let own = self.findings.iter().filter(|finding| finding.severity == severity);
+            match own.count() {
+                0 => None,
+                1 => Some(format!("1 {noun}")),
+                count => Some(format!("{count} {noun}s")),
+            }
+        });
+        let counts = counts.collect::<Vec<_>>().join(", ");
+        let separator = if counts.is_empty() { "" } else { "; " };
+        match self.verdict() {
+            Verdict::Findings => format!("findings: {counts}"),
+            Verdict::Clean if self.gaps.is_empty() => {
+                format!("no findings: {}{separator}{counts}", Verdict::Clean)
+            }
+            Verdict::Clean => format!(
+                "no findings: {}, but for what is not checked{separator}{counts}",
+                Verdict::Clean
+            ),
+            Verdict::None => format!("{}{separator}{counts}", Verdict::None),
         }
     }
 
@@ -375,4 +416,15 @@ pub enum Severity {
     Undecided,
     /// The verdict does not depend on it.
     Remark,
+}
+
+impl Severity {
+    /// Returns its word in JSON.
+    pub fn keyword(self) -> &'static str {
+        match self {
+            Severity::Violation => "violation",
+            Severity::Undecided => "undecided",
+            Severity::Remark => "remark",
+        }
+    }
 }

@@ -3,7 +3,6 @@
 use super::super::{Content, prefix};
 use super::plain;
 use crate::program::extent;
-use crate::verify::finding_counts;
 use maud::{Markup, html};
 use std::collections::BTreeMap;
 use touchoff::Unit;
@@ -28,31 +27,16 @@ pub(super) fn summary(content: &Content<'_>, title: &str) -> Markup {
     }
 }
 
-/// Returns the ending of a noun after a count.
-fn plural(count: usize) -> &'static str {
-    if count == 1 { "" } else { "s" }
-}
-
-/// Returns the verdict, as the exit status of `verify` states it.
+/// Returns the verdict, as `verify` states it.
 fn verdict(content: &Content<'_>) -> Markup {
-    let refusals = content.checked.refusals();
-    let [violations, undecided, remarks] = finding_counts(content.checked);
-    let (class, text) = if content.checked.verdict() == Verdict::None {
-        ("open", "Not verified".to_owned())
-    } else if violations > 0 {
-        ("bad", format!("{violations} violation{}", plural(violations)))
-    } else if undecided > 0 {
-        ("open", format!("No violation found, {undecided} finding{} undecided", plural(undecided)))
-    } else {
-        ("good", "No findings: every motion is proved to stay within its limits".to_owned())
+    let class = match content.checked.verdict() {
+        Verdict::Clean => "good",
+        Verdict::Findings => "bad",
+        Verdict::None => "open",
     };
     html! {
-        p.verdict.(class) {
-            strong { (text) }
-            @if violations > 0 && undecided > 0 { " and " (undecided) " undecided" }
-            @if remarks > 0 { "; " (remarks) " warning" (plural(remarks)) }
-        }
-        @for reason in &refusals {
+        p.verdict.(class) { strong { (content.checked.headline()) } }
+        @for reason in content.checked.refusals() {
             p.reason { "Not verified: " (plain(&reason.to_string())) " [" (reason.code()) "]" }
         }
     }
