@@ -327,8 +327,15 @@ impl Code {
     /// Returns whether nothing is known of an effect on the path.
     pub(super) fn can_be_ignored(self) -> bool {
         match group(self) {
-            // Findings come from the turn of the spindle.
-            Ok(_) if matches!((self.letter, self.tenths), ('M', 30 | 40 | 50 | 190)) => false,
+            // The turn of the spindle has findings, M29 is the tapping of the next cycle, and G67 ends the calls of G66.
+            Ok(_)
+                if matches!(
+                    (self.letter, self.tenths),
+                    ('M', 30 | 40 | 50 | 190 | 290) | ('G', 670)
+                ) =>
+            {
+                false
+            }
             Ok(group) => matches!(group, Group::PassedOver | Group::PathControl),
             Err(GcodeFault::NotRead { remedy, .. }) => remedy == IGNORE,
             Err(_) => true,

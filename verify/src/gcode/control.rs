@@ -109,6 +109,8 @@ pub(super) struct Control {
     last_register: Option<u32>,
     /// Set by a change of the length offset, until Z is stated.
     length_changed: bool,
+    /// The coordinate Z before that change.
+    height_before: Option<f64>,
     /// Set by a change of a work offset or a shift for its axes, until each is stated.
     origin_changed: [bool; 6],
     /// Set by G68 and G69, until a position in the plane is stated.
@@ -324,6 +326,7 @@ impl Control {
             returned: None,
             last_register: None,
             length_changed: false,
+            height_before: None,
             origin_changed: [false; 6],
             rotation_changed: false,
             uncalled: None,
@@ -365,6 +368,21 @@ impl Control {
         let block = self.block();
         self.asked.entry(rule).or_insert(block);
         self.rules.get(rule).unwrap_or_else(|| rule.choices().next().expect("a rule has choices"))
+    }
+
+    /// Returns whether a length offset is in force.
+    pub(super) fn has_length_offset(&self) -> bool {
+        self.state.length != LengthOffset::Off
+    }
+
+    /// Returns whether cutter compensation is in force.
+    pub(super) fn compensates(&self) -> bool {
+        self.compensation.is_some()
+    }
+
+    /// Returns whether a canned cycle is in force.
+    pub(super) fn is_in_cycle(&self) -> bool {
+        self.modal.cycle().is_some()
     }
 
     /// Returns whether the setup ignores a word.
@@ -478,9 +496,18 @@ impl Control {
         let has_length = block.is_nonzero("XYZIJKRQ");
         self.unit_of_lengths(has_length);
         if block.has_whole() && self.choice(Rule::WholeNumbers) == Choice::Increments {
-            let has_angles = block.code_of(Group::Rotation).is_some();
             let (length, motion) = (self.modal.increment(), self.modal.motion);
-            let has_polar_angle = self.polar.is_some() && !block.owns_axis_words();
+            // G15 and G16 hold for their own block.
+            let is_polar = match block.tenths_of(Group::Polar) {
+                Some(tenths) => tenths == 160,
+                None => self.polar.is_some(),
+            };
+            let has_polar_angle = is_polar && !block.owns_axis_words();
+            let angles = match block.tenths_of(Group::Rotation) {
+                Some(680) => "R",
+                Some(682) => "IJKR",
+                _ => "",
+            };
             // The rule is asked only where it matters: each that is not stated doubles the readings.
             let has_whole_radius = block.is_whole('R') || block.is_whole('Q');
             let keeps_radii = has_whole_radius && self.choice(Rule::WholeRadii) == Choice::Units;
@@ -489,10 +516,9 @@ impl Control {
                 // The least increment of an angle, whatever the unit.
                 'A' | 'B' | 'C' => 1e-3,
                 'Y' if has_polar_angle => 1e-3,
+                letter if angles.contains(letter) => 1e-3,
                 // The number of repeats of a cycle.
                 'K' if matches!(motion, Some(Motion::Cycle(_))) => 1.0,
-                // The angles of G68 and G68.2.
-                'I' | 'J' | 'K' | 'R' if has_angles => 1e-3,
                 _ => length,
             });
         }

@@ -57,6 +57,7 @@
 mod block;
 mod comment;
 mod control;
+mod cursor;
 mod error;
 mod files;
 mod interpreter;

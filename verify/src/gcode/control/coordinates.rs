@@ -23,7 +23,10 @@ impl Control {
         edit(&mut new);
         // Steps share the state until it changes.
         if new != *self.state {
-            self.length_changed |= new.length != self.state.length;
+            if new.length != self.state.length {
+                self.length_changed = true;
+                self.height_before = self.height_before.or(self.position[2]);
+            }
             // A plane that turns nothing leaves nothing open.
             let is_upright = [&new, &self.state].iter().all(|state| {
                 state.rotation.frame().is_none_or(|frame| frame.rotation == Matrix3::identity())
@@ -274,15 +277,15 @@ impl Control {
             let has_returned =
                 matches!(self.returned, Some(Returned::Height | Returned::MachineHeight));
             self.length(block, code)?;
-            let one_shot = block.tenths_of(Group::OneShot);
-            let is_return = matches!(one_shot, Some(280 | 300));
+            // The Z of G53 is that of a motion, those of G28, G52, G92, G10 and a rotation are none.
+            let is_owned = block.owns_axis_words() && block.code_of(Group::Machine).is_none();
             // At a reference position the offset is suspended, so that its change moves nothing.
-            if (is_return || !block.has('Z'))
+            if (is_owned || !block.has('Z'))
                 && !has_returned
                 && self.moves_by_length(&before, height)
             {
                 let is_rotated = self.state.rotation != Rotation::Off;
-                if is_return || is_rotated || block.has_any("XYABC") {
+                if is_rotated || block.has_any(if is_owned { "XYZABC" } else { "XYABC" }) {
                     let condition = "the length offset changes, and moves Z";
                     let remedy = "write it in a block of its own, without a rotation";
                     return Err(combination(code, condition, remedy));
@@ -408,11 +411,11 @@ impl Control {
     }
 
     /// Moves Z to the coordinate that it had before.
-    fn move_along_z(&mut self, height: Option<f64>) {
+    pub(super) fn move_along_z(&mut self, height: Option<f64>) {
         let mut end = self.position;
         end[2] = height;
         let rapid = matches!(self.modal.motion, None | Some(Motion::Rapid));
-        self.length_changed = false;
+        (self.length_changed, self.height_before) = (false, None);
         self.push(rapid, end, Z_ALONE, StepPath::Line);
     }
 

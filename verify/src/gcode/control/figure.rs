@@ -103,11 +103,12 @@ impl Control {
         }
         let groups =
             [Group::OneShot, Group::Machine, Group::WorkOffset, Group::Length, Group::Kinematics];
-        let mut owner = groups.into_iter().find_map(|group| block.code_of(group));
-        owner = owner.or(block.code_of(Group::Rotation).filter(|code| code.tenths != 690));
+        let rotation = block.code_of(Group::Rotation).filter(|code| code.tenths != 690);
+        let mut owners =
+            groups.into_iter().filter_map(|group| block.code_of(group)).chain(rotation);
         // A length offset changes no coordinate that is mapped, but for tool centre point control.
         let is_plain = |code: &Code| matches!(code.tenths, 430 | 490 | 531);
-        if let Some(code) = owner.filter(|code| !is_plain(code)) {
+        if let Some(code) = owners.find(|code| !is_plain(code)) {
             let condition = "polar coordinates or a mirror image are in force";
             let remedy = "end them before (G15, G50.1 with their axes)";
             return Err(combination(code, condition, remedy));
@@ -132,6 +133,9 @@ impl Control {
             let remedy = "write R, or the arc after G15";
             return Err(combination("a centre I J", "G16 is in force", remedy));
         }
+        if self.modal.plane != Plane::Xy && block.has_any("XYZ") {
+            return Err(combination(word, "G18 or G19 is in force", "write G17 before"));
+        }
         if !block.has_any("XY") {
             return Ok(());
         }
@@ -140,9 +144,6 @@ impl Control {
         if is_incremental {
             let condition = "it is an increment, whose centre is the present position";
             return Err(combination(word, condition, "write G90"));
-        }
-        if self.modal.plane != Plane::Xy {
-            return Err(combination(word, "G18 or G19 is in force", "write G17 before"));
         }
         let radius = block.value('X').map(|radius| self.modal.millimetres(radius));
         let polar =

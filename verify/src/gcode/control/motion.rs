@@ -350,7 +350,20 @@ impl Control {
             block.take_whole('P', 2, 2, "P2, or no P")?;
         }
         self.check_tilted(block)?;
-        self.check_shifted(block)?;
+        // An increment of 0 along Z states nothing, and on Fanuc the change of the length acts on it: the way through the place where the
+        // offset leads is that of controls on which it does, too.
+        let is_dropped = self.length_changed && block.has('Z') && self.is_incremental(block, 'Z');
+        match block.value('Z') {
+            Some(0.0) if is_dropped => {
+                self.check_shifted(block)?;
+                self.check_after_rotation(block)?;
+                if self.stated(Rule::Dialect) != Some(Choice::Rs274Ngc) {
+                    let height = self.height_before;
+                    self.move_along_z(height);
+                }
+            }
+            _ => self.check_position(block)?,
+        }
         let (end, mut named, commanded) = self.take_end(block);
         // Without axes all return on LinuxCNC and Haas, and none on Fanuc.
         if !named.contains(&true) {

@@ -208,6 +208,7 @@ impl Control {
         }
         // On Fanuc the change of the length acts on an increment, too.
         let length_changed = block.has('Z') && std::mem::take(&mut self.length_changed);
+        self.height_before = self.height_before.filter(|_| self.length_changed);
         if length_changed && self.is_incremental(block, 'Z') {
             let condition = "G91 is in force and the length offset has changed";
             let remedy = "write it in G90";
@@ -289,7 +290,7 @@ impl Control {
     }
 
     /// Refuses the first position after G68 or G69, if it is not that of both axes of the plane.
-    fn check_after_rotation(&mut self, block: &Block) -> Result<(), GcodeFault> {
+    pub(super) fn check_after_rotation(&mut self, block: &Block) -> Result<(), GcodeFault> {
         let is_absolute = !self.modal.incremental;
         let given =
             self.modal.plane.axes().map(|axis| {

@@ -9,6 +9,7 @@
 
 use super::variables::{Scope, parameter};
 use crate::codes::faults;
+use crate::gcode::cursor::Cursor;
 use crate::gcode::{LARGEST_NUMBER, shown};
 use crate::machine::sin_cos_degrees;
 
@@ -215,74 +216,6 @@ fn place(shown: &str) -> String {
     if shown.is_empty() { "at the end of the line".to_owned() } else { format!("before {shown}") }
 }
 
-/// A position in the text of a line.
-#[derive(Clone, Copy)]
-pub(super) struct Cursor<'a> {
-    text: &'a str,
-    at: usize,
-}
-
-impl<'a> Cursor<'a> {
-    pub(super) fn new(text: &'a str) -> Cursor<'a> {
-        Cursor { text, at: 0 }
-    }
-
-    /// Returns the next byte that is no blank, without passing over it.
-    pub(super) fn peek(&mut self) -> Option<u8> {
-        let bytes = self.text.as_bytes();
-        while matches!(bytes.get(self.at), Some(b' ' | b'\t')) {
-            self.at += 1;
-        }
-        bytes.get(self.at).copied()
-    }
-
-    /// Passes over the next byte that is no blank if it is the given one.
-    pub(super) fn take(&mut self, byte: u8) -> bool {
-        let found = self.peek() == Some(byte);
-        self.at += usize::from(found);
-        found
-    }
-
-    /// Passes over one byte, which has to be ASCII.
-    pub(super) fn advance(&mut self) {
-        self.at += 1;
-    }
-
-    /// Passes over bytes as long as they satisfy the condition, and returns their text.
-    pub(super) fn take_while(&mut self, condition: impl Fn(u8) -> bool) -> &'a str {
-        let rest = &self.text[self.at..];
-        let length = rest.bytes().position(|byte| !condition(byte)).unwrap_or(rest.len());
-        self.at += length;
-        &rest[..length]
-    }
-
-    /// Passes over a word in either case, if it comes next. Text may follow without a blank.
-    pub(super) fn take_word(&mut self, word: &str) -> bool {
-        self.peek();
-        let found = self.rest().as_bytes().get(..word.len());
-        let found = found.is_some_and(|found| found.eq_ignore_ascii_case(word.as_bytes()));
-        self.at += if found { word.len() } else { 0 };
-        found
-    }
-
-    /// Returns the rest of the line.
-    pub(super) fn rest(&self) -> &'a str {
-        &self.text[self.at..]
-    }
-
-    /// Returns the text from here to the place of another cursor of the line.
-    pub(super) fn text_to(&self, other: &Cursor<'a>) -> &'a str {
-        &self.text[self.at..other.at.max(self.at)]
-    }
-
-    /// Passes over the text up to a delimiter and the delimiter, and returns the text before it.
-    pub(super) fn take_until(&mut self, delimiter: char) -> Option<&'a str> {
-        let (before, _) = self.rest().split_once(delimiter)?;
-        self.at += before.len() + delimiter.len_utf8();
-        Some(before)
-    }
-}
-
 /// A function of one argument, or of two (`ATAN`, `POW`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Function {
@@ -449,7 +382,11 @@ fn agreed(
     linuxcnc.peek();
     // A program that one of them refuses runs on the other only.
     let (value, end) = match (first, second) {
-        (Ok(first), Ok(second)) if first == second && fanuc.at == linuxcnc.at => (first, fanuc),
+        (Ok(first), Ok(second))
+            if first == second && fanuc.rest().len() == linuxcnc.rest().len() =>
+        {
+            (first, fanuc)
+        }
         (Ok(_), Ok(_)) => {
             return Err(ExpressionFault::Differs { shown: shown(start.text_to(&fanuc)) });
         }
@@ -513,7 +450,7 @@ impl Reader<'_> {
     fn operator<'a>(&self, mut cursor: Cursor<'a>) -> Option<(Operator, u8, Cursor<'a>)> {
         cursor.peek();
         let (_, operator, precedences) =
-            OPERATORS.into_iter().find(|(name, _, _)| cursor.take_word(name))?;
+            OPERATORS.into_iter().find(|(name, _, _)| cursor.take_text(name))?;
         let precedence = precedences[usize::from(self.language == Language::LinuxCnc)];
         (precedence > 0).then_some((operator, precedence, cursor))
     }

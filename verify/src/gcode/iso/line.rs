@@ -3,12 +3,13 @@
 //! character that belongs to none of these stops the interpreter.
 
 use super::expression::{
-    Cursor, ExpressionFault, Language, Rounding, Value, begins_value, condition, value,
+    ExpressionFault, Language, Rounding, Value, begins_value, condition, value,
 };
 use super::flow::before_semicolon;
 use super::variables::{Parameter, Scope, assignment};
 use crate::gcode::block::{Block, Code, Group, Keyword, Number};
 use crate::gcode::control::{Corner, CornerShape};
+use crate::gcode::cursor::Cursor;
 use crate::gcode::error::{combination, missing, not_read};
 use crate::gcode::rules::{Choice, Rule};
 use crate::gcode::{GcodeFault, LARGEST_NUMBER, MAX_ASSIGNMENTS, unquoted};
@@ -359,8 +360,8 @@ impl Line {
             "GOTO" => Statement::GoTo(sequence_number(cursor, scope)?),
             "IF" => {
                 let holds = condition(cursor, scope)?;
-                let is_jump = cursor.take_word("GOTO");
-                if !is_jump && !cursor.take_word("THEN") {
+                let is_jump = cursor.take_text("GOTO");
+                if !is_jump && !cursor.take_text("THEN") {
                     let needed = "GOTO or THEN after its condition";
                     return Err(missing("IF", needed));
                 }
@@ -383,7 +384,7 @@ impl Line {
             }
             "WHILE" => {
                 let holds = condition(cursor, scope)?;
-                if !cursor.take_word("DO") {
+                if !cursor.take_text("DO") {
                     return Err(missing("WHILE", "DO with a number after its condition"));
                 }
                 loop_number(cursor, "DO")?;
@@ -425,7 +426,7 @@ fn file_name(cursor: &mut Cursor) -> Result<Option<String>, GcodeFault> {
 pub(super) fn statement(cursor: &mut Cursor) -> Option<&'static str> {
     let start = *cursor;
     let word =
-        ["GOTO", "IF", "WHILE", "DO", "END"].into_iter().find(|word| cursor.take_word(word))?;
+        ["GOTO", "IF", "WHILE", "DO", "END"].into_iter().find(|word| cursor.take_text(word))?;
     // `GOTOF` and `ENDIF` are Sinumerik's.
     let goes_on = cursor.rest().as_bytes().first().is_some_and(u8::is_ascii_alphabetic);
     if goes_on {

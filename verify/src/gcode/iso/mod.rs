@@ -17,6 +17,7 @@ pub(super) use flow::{Place, line};
 
 use super::block::{Block, Code, Group};
 use super::control::Control;
+use super::cursor::Cursor;
 use super::error::{combination, missing, not_read};
 use super::files::{self, in_file};
 use super::interpreter::Progress;
@@ -24,7 +25,7 @@ use super::note::NoteKind;
 use super::rules::{Choice, Rule};
 use super::{ControlSetup, GcodeError, GcodeFault, Repeated, SubprogramFile, shown, work};
 use blank::{BlankLine, blank_line};
-use expression::{Cursor, Language, Rounding, Value, condition, value};
+use expression::{Language, Rounding, Value, condition, value};
 use flow::{Callee, Flow, Source, before_semicolon};
 use line::{Label, Line, MacroCall, OWord, Role, Statement, begin, check_end, next, o_word};
 use std::mem;
@@ -184,6 +185,7 @@ impl<'a> Program<'a> {
         control.set_line(self.called_file(), number);
         // Prose is taken for a comment, so that the rule is asked about blocks only.
         let after = after_semicolon(text).filter(|after| after.split(';').any(could_be_block));
+        self.line.has_branched = false;
         let mut progress = self.line(number, text, control)?;
         let Some(after) = after else { return Ok(progress) };
         if control.choice(Rule::Semicolon) == Choice::Comment {
@@ -324,6 +326,18 @@ impl<'a> Program<'a> {
             return Err(combination("axis words", condition, remedy));
         }
         let ignores = line.ignores;
+        let taken = [
+            ("H", Group::Length, control.has_length_offset()),
+            ("D", Group::CutterCompensation, control.compensates()),
+            ("QRL", Group::Motion, control.is_in_cycle()),
+        ];
+        let taken = taken.into_iter().find(|(letters, group, in_force)| {
+            *in_force && block.code_of(*group).is_none() && block.has_any(letters)
+        });
+        if let (true, Some((letters, ..))) = (ignores, taken) {
+            let condition = "its block has an ignored word, whose own it could be, as well as that of what is in force";
+            return Err(combination(letters, condition, "write the word in a block of its own"));
+        }
         // Letters that no other word has used belong to an ignored one.
         let check_used = |block: &mut Block| {
             if ignores {

@@ -1,9 +1,9 @@
 //! The structure of a text: its programs and subprograms, and the lines that belong to one decision or loop.
 
-use super::expression::Cursor;
 use super::flow::{Place, line};
 use super::line::{Label, OWord, Role, begin, loop_number, next, o_word, statement};
 use super::variables::Scope;
+use crate::gcode::cursor::Cursor;
 use crate::gcode::{GcodeError, GcodeFault};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -171,7 +171,7 @@ impl Structure {
         here: Place,
         after: Place,
     ) {
-        if cursor.take_word("G65") || cursor.take_word("G66") {
+        if cursor.take_text("G65") || cursor.take_text("G66") {
             self.fanuc.get_or_insert(here.line);
             return;
         }
@@ -179,7 +179,7 @@ impl Structure {
         self.fanuc.get_or_insert(here.line);
         if word == "WHILE" {
             pass_bracket(&mut cursor);
-            if !cursor.take_word("DO") {
+            if !cursor.take_text("DO") {
                 return;
             }
         }

@@ -9,9 +9,10 @@
 //! A common variable keeps the value that an earlier program or the operator has left in it. It is known only where the program has
 //! assigned it, or the setup declares it.
 
-use super::expression::{Cursor, ExpressionFault, Language, Reader, Rounding, Value, expression};
+use super::expression::{ExpressionFault, Language, Reader, Rounding, Value, expression};
 use super::{language, system};
 use crate::gcode::control::Control;
+use crate::gcode::cursor::Cursor;
 use std::collections::BTreeMap;
 
 /// The last local variable of Fanuc.

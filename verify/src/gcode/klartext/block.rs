@@ -157,7 +157,7 @@ impl<'a> Scale<'a> {
                 b'I' => {
                     let start = *cursor;
                     cursor.advance();
-                    match cursor.here().map(|byte| byte.to_ascii_uppercase()) {
+                    match cursor.byte().map(|byte| byte.to_ascii_uppercase()) {
                         Some(letter @ (b'X'..=b'Z' | b'A'..=b'C')) => {
                             cursor.advance();
                             self.axis(cursor, letter, true, &mut words)?;
@@ -171,7 +171,7 @@ impl<'a> Scale<'a> {
                 }
                 b'P' => self.polar(cursor, false, &mut words)?,
                 b'R' => self.radius(cursor, &mut words)?,
-                b'D' if cursor.take_prefix("DR") => {
+                b'D' if cursor.take_text("DR") => {
                     let is_clockwise = cursor.take(b'-');
                     if !is_clockwise && !cursor.take(b'+') {
                         return Err(cursor.unexpected("DR+ or DR-"));
@@ -221,8 +221,8 @@ impl<'a> Scale<'a> {
         incremental: bool,
         words: &mut Words,
     ) -> Result<(), GcodeFault> {
-        let is_radius = cursor.take_prefix("PR");
-        if !is_radius && !cursor.take_prefix("PA") {
+        let is_radius = cursor.take_text("PR");
+        if !is_radius && !cursor.take_text("PA") {
             return Err(cursor.unexpected("PR or PA"));
         }
         let value = value(cursor, self.known)?;
@@ -248,7 +248,7 @@ impl<'a> Scale<'a> {
             return Err(not_read(shown, meaning, "write the position of the tool's centre"));
         }
         // The next word may follow without a blank: `R0FMAX`.
-        let side = match cursor.here().map(|byte| byte.to_ascii_uppercase()) {
+        let side = match cursor.byte().map(|byte| byte.to_ascii_uppercase()) {
             Some(b'L') => Side::Left,
             Some(b'R') => Side::Right,
             _ => {
@@ -267,22 +267,22 @@ impl<'a> Scale<'a> {
     /// Reads a feed.
     pub(super) fn feed(&self, cursor: &mut Cursor) -> Result<Feed, GcodeFault> {
         cursor.advance();
-        match cursor.here().map(|byte| byte.to_ascii_uppercase()) {
+        match cursor.byte().map(|byte| byte.to_ascii_uppercase()) {
             Some(b'U' | b'Z') => cursor.advance(),
             Some(b'T') => {
                 return Err(not_read("FT", "a feed by the time of a block", "write F"));
             }
             _ => {}
         }
-        if cursor.take_prefix("MAX") {
-            return match cursor.here() {
+        if cursor.take_text("MAX") {
+            return match cursor.byte() {
                 Some(b'T' | b't') => {
                     Err(not_read("FMAXT", "a feed by the time of a block", "write FMAX"))
                 }
                 _ => Ok(Feed::Rapid),
             };
         }
-        if cursor.take_prefix("AUTO") {
+        if cursor.take_text("AUTO") {
             return Ok(Feed::OfTool);
         }
         Ok(Feed::Rate(value(cursor, self.known)?))
@@ -318,7 +318,7 @@ impl<'a> Scale<'a> {
             }
             120 => {
                 codes.push(number);
-                if cursor.take_prefix("LA") {
+                if cursor.take_text("LA") {
                     value(cursor, self.known)?;
                 }
             }
@@ -329,10 +329,10 @@ impl<'a> Scale<'a> {
 
     /// Reads `MB` and its feed.
     pub(super) fn retract(&self, cursor: &mut Cursor) -> Result<Retract, GcodeFault> {
-        if !cursor.take_prefix("MB") {
+        if !cursor.take_text("MB") {
             return Err(cursor.unexpected("MB with a distance, or MB MAX, after M140"));
         }
-        let is_whole = cursor.take_prefix("MAX");
+        let is_whole = cursor.take_text("MAX");
         let distance = if is_whole { None } else { Some(self.length(cursor)?) };
         if let Some(value) = distance.filter(|distance| *distance < 0.0) {
             let shown = format!("MB {value}");
@@ -354,11 +354,11 @@ pub(super) fn m_entry(number: u32) -> Result<&'static Entry, GcodeFault> {
 fn takes_angle_of_plane(cursor: &mut Cursor, letter: u8) -> bool {
     let mut ahead = *cursor;
     ahead.take(b'+');
-    let is_angle = ahead.take_prefix("Q12") && ahead.here() == Some(letter - b'A' + b'0');
+    let is_angle = ahead.take_text("Q12") && ahead.byte() == Some(letter - b'A' + b'0');
     if is_angle {
         ahead.advance();
     }
-    let found = is_angle && !ahead.here().is_some_and(|byte| byte.is_ascii_digit());
+    let found = is_angle && !ahead.byte().is_some_and(|byte| byte.is_ascii_digit());
     if found {
         *cursor = ahead;
     }

@@ -279,7 +279,7 @@ impl Program<'_> {
         while cursor.peek().is_some() {
             let mut ahead = *cursor;
             let is_parameter =
-                ahead.take_prefix("Q") && ahead.here().is_some_and(|b| b.is_ascii_digit());
+                ahead.take_text("Q") && ahead.byte().is_some_and(|b| b.is_ascii_digit());
             if !is_parameter && !given.values.is_empty() {
                 return Err(cursor.unexpected("a parameter of the cycle, as Q201=-5"));
             }

@@ -269,14 +269,14 @@ fn function(cursor: &mut Cursor, known: &Parameters, depth: usize) -> Result<f64
     let found = FUNCTIONS.iter().find(|name| {
         let mut ahead = *cursor;
         // The name of a parameter may follow without a blank, as in `SINQ1`.
-        ahead.take_prefix(name)
-            && ahead.here().is_none_or(|byte| !byte.is_ascii_alphabetic() || byte == b'Q')
+        ahead.take_text(name)
+            && ahead.byte().is_none_or(|byte| !byte.is_ascii_alphabetic() || byte == b'Q')
     });
     let Some(operation) = found.copied() else {
         let name = cursor.letters().to_ascii_uppercase();
         return Err(ExpressionFault::Operation { name }.into());
     };
-    cursor.take_prefix(operation);
+    cursor.take_text(operation);
     if operation == "PI" {
         return Ok(std::f64::consts::PI);
     }

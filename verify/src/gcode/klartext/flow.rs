@@ -356,7 +356,7 @@ pub(super) fn call<'a>(
     if label == Label::Number(0) {
         return Err(missing("CALL LBL", "another label than 0, which ends a subprogram"));
     }
-    if !cursor.take_prefix("REP") {
+    if !cursor.take_text("REP") {
         cursor.check_end()?;
         return flow.call(label);
     }

@@ -218,8 +218,8 @@ impl Program<'_> {
 
     /// Executes the angle of CYCL DEF 10.
     fn rotate(&mut self, cursor: &mut Cursor, control: &mut Control) -> Result<(), GcodeFault> {
-        let is_increment = cursor.take_prefix("IROT");
-        if !is_increment && !cursor.take_prefix("ROT") {
+        let is_increment = cursor.take_text("IROT");
+        if !is_increment && !cursor.take_text("ROT") {
             return Err(cursor.unexpected("ROT with an angle"));
         }
         let angle = value(cursor, &self.parameters)?;
@@ -420,12 +420,12 @@ impl Program<'_> {
         let scale = Scale::new(&self.parameters, self.unit);
         let mut words = PlaneWords::default();
         while !cursor.is_at_end() {
-            if let Some(index) = VALUES.iter().position(|name| cursor.take_prefix(name)) {
+            if let Some(index) = VALUES.iter().position(|name| cursor.take_text(name)) {
                 words.values[index] = Some(value(cursor, &self.parameters)?);
                 continue;
             }
             let mut refused = PLANES.iter().filter(|entry| entry.check().is_err());
-            match refused.find(|entry| cursor.take_prefix(entry.word)) {
+            match refused.find(|entry| cursor.take_text(entry.word)) {
                 Some(entry) if entry.word.starts_with("SYM") => {
                     words.symmetry = Some(entry);
                     continue;
@@ -433,23 +433,23 @@ impl Program<'_> {
                 Some(entry) => entry.check()?,
                 None => {}
             }
-            if cursor.take_prefix("TURN") {
+            if cursor.take_text("TURN") {
                 words.set(Positioning::Turn)?;
-            } else if cursor.take_prefix("MOVE") {
-                let has_distance = ["DIST", "ABST", "SETUP"].iter().any(|w| cursor.take_prefix(w));
+            } else if cursor.take_text("MOVE") {
+                let has_distance = ["DIST", "ABST", "SETUP"].iter().any(|w| cursor.take_text(w));
                 let distance = if has_distance { scale.length(cursor)? } else { 0.0 };
                 if distance < 0.0 {
                     return Err(missing("DIST", "a distance from 0"));
                 }
                 words.set(Positioning::Move { distance })?;
-            } else if cursor.take_prefix("STAY") {
+            } else if cursor.take_text("STAY") {
                 words.set(Positioning::Stay)?;
-            } else if cursor.take_prefix("COORD") && cursor.take_prefix("ROT") {
+            } else if cursor.take_text("COORD") && cursor.take_text("ROT") {
                 let word = "COORD ROT".to_owned();
                 control.notes.add(control.block(), NoteKind::PassedOver { word });
-            } else if cursor.take_prefix("TABLE") && cursor.take_prefix("ROT") {
+            } else if cursor.take_text("TABLE") && cursor.take_text("ROT") {
                 words.turns_table = true;
-            } else if cursor.take_prefix("SEQ") {
+            } else if cursor.take_text("SEQ") {
                 let is_positive = cursor.take(b'+');
                 if !is_positive && !cursor.take(b'-') {
                     return Err(cursor.unexpected("SEQ+ or SEQ-"));

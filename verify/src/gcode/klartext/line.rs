@@ -4,6 +4,7 @@
 //! one if it is wrapped. Numbers
 //! have a point or a comma.
 
+use crate::gcode::cursor::{self, Blanks};
 use crate::gcode::{ExpressionFault, GcodeFault, LARGEST_NUMBER, shown, unquoted};
 use touchoff::Unit;
 
@@ -54,61 +55,27 @@ pub(super) fn head(block: &str) -> Option<Unit> {
     }
 }
 
-/// A position in the text of a block.
+/// Blanks, ends of lines, comments and the signs of continued lines.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Cursor<'a> {
-    text: &'a str,
-    at: usize,
-}
+pub(super) struct Continued;
 
-impl<'a> Cursor<'a> {
-    pub(super) fn new(text: &'a str) -> Cursor<'a> {
-        Cursor { text, at: 0 }
-    }
-
-    /// Passes over blanks, comments and the signs of continued lines, and returns the next byte without passing over it.
-    pub(super) fn peek(&mut self) -> Option<u8> {
-        let bytes = self.text.as_bytes();
+impl Blanks for Continued {
+    fn length(text: &str) -> usize {
+        let mut length = 0;
         loop {
-            match *bytes.get(self.at)? {
-                b' ' | b'\t' | b'\r' | b'\n' | b'~' => self.at += 1,
-                b';' => self.at += comment(&self.text[self.at..]),
-                byte => return Some(byte),
+            match text.as_bytes().get(length) {
+                Some(b' ' | b'\t' | b'\r' | b'\n' | b'~') => length += 1,
+                Some(b';') => length += comment(&text[length..]),
+                _ => return length,
             }
         }
     }
+}
 
-    /// Returns the byte at the cursor, which may be a blank.
-    pub(super) fn here(&self) -> Option<u8> {
-        self.text.as_bytes().get(self.at).copied()
-    }
+/// A place in the text of a block.
+pub(super) type Cursor<'a> = cursor::Cursor<'a, Continued>;
 
-    /// Passes over the next byte that is no blank if it is the given one.
-    pub(super) fn take(&mut self, byte: u8) -> bool {
-        let found = self.peek() == Some(byte);
-        self.at += usize::from(found);
-        found
-    }
-
-    /// Passes over one byte, which has to be ASCII.
-    pub(super) fn advance(&mut self) {
-        self.at += 1;
-    }
-
-    /// Passes over bytes as long as they satisfy the condition, and returns their text.
-    pub(super) fn take_while(&mut self, condition: impl Fn(u8) -> bool) -> &'a str {
-        let rest = &self.text[self.at..];
-        let length = rest.bytes().position(|byte| !condition(byte)).unwrap_or(rest.len());
-        self.at += length;
-        &rest[..length]
-    }
-
-    /// Passes over blanks, and returns the letters after them.
-    pub(super) fn letters(&mut self) -> &'a str {
-        self.peek();
-        self.take_while(|byte| byte.is_ascii_alphabetic())
-    }
-
+impl<'a> Cursor<'a> {
     /// Passes over a word of letters, in either case, if it is next.
     pub(super) fn take_word(&mut self, word: &str) -> bool {
         let mut ahead = *self;
@@ -119,31 +86,17 @@ impl<'a> Cursor<'a> {
         found
     }
 
-    /// Passes over a text, in either case, if it is next, whatever follows it.
-    pub(super) fn take_prefix(&mut self, prefix: &str) -> bool {
-        self.peek();
-        let next = self.text.as_bytes().get(self.at..self.at + prefix.len());
-        let found = next.is_some_and(|next| next.eq_ignore_ascii_case(prefix.as_bytes()));
-        self.at += if found { prefix.len() } else { 0 };
-        found
-    }
-
     /// Passes over a text in quotes, and returns it.
     pub(super) fn quoted(&mut self) -> Result<&'a str, GcodeFault> {
-        let rest = &self.text[self.at..];
+        let rest = self.rest();
         let name = rest[1..].split(['"', '\n']).next().unwrap_or_default();
         match rest[1 + name.len()..].starts_with('"') {
             true => {
-                self.at += name.len() + 2;
+                self.advance_by(name.len() + 2);
                 Ok(name)
             }
             false => Err(expected(rest, "the second quotation mark of a name")),
         }
-    }
-
-    /// Returns the rest of the block.
-    pub(super) fn rest(&self) -> &'a str {
-        &self.text[self.at..]
     }
 
     /// Returns whether only blanks and comments follow.
@@ -171,7 +124,7 @@ impl<'a> Cursor<'a> {
         let digits = self.take_while(|byte| byte.is_ascii_digit() || byte == b'.');
         // A comma is the point of controls in German.
         let mut number = digits.parse::<f64>();
-        if self.here() == Some(b',') && !digits.contains('.') {
+        if self.byte() == Some(b',') && !digits.contains('.') {
             self.advance();
             let places = self.take_while(|byte| byte.is_ascii_digit());
             number = format!("{digits}.{places}").parse();

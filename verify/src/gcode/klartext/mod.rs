@@ -338,8 +338,7 @@ impl<'a> Program<'a> {
         if !cursor.take_word("FORM") {
             return Ok(());
         }
-        let Some(corner) = ["0.1", "0.2"].iter().position(|number| cursor.take_prefix(number))
-        else {
+        let Some(corner) = ["0.1", "0.2"].iter().position(|number| cursor.take_text(number)) else {
             return Ok(());
         };
         if corner == 0 {
@@ -507,7 +506,7 @@ impl<'a> Program<'a> {
                     _ => "COS",
                 };
                 let mut ahead = *cursor;
-                if !ahead.take_prefix(name) {
+                if !ahead.take_text(name) {
                     return Err(cursor.unexpected("SQRT, SIN or COS, as the number of FN says"));
                 }
                 formula(cursor, known)?
@@ -518,9 +517,9 @@ impl<'a> Program<'a> {
                     "1" => cursor.take(b'+'),
                     "2" => cursor.take(b'-'),
                     "3" => cursor.take(b'*'),
-                    "4" => cursor.take_prefix("DIV") || cursor.take(b'/'),
-                    "8" => cursor.take_prefix("LEN"),
-                    _ => cursor.take_prefix("ANG"),
+                    "4" => cursor.take_text("DIV") || cursor.take(b'/'),
+                    "8" => cursor.take_text("LEN"),
+                    _ => cursor.take_text("ANG"),
                 };
                 if !is_between {
                     return Err(cursor.unexpected("the operator of FN"));
@@ -643,13 +642,13 @@ impl<'a> Program<'a> {
                     }
                     _ => return Err({ start }.unexpected("F with a number")),
                 },
-                b'D' if cursor.take_prefix("DL") => {
+                b'D' if cursor.take_text("DL") => {
                     // Tables of tools write it with a colon.
                     cursor.take(b':');
                     allowance = Some(scale.length(cursor)?);
                 }
-                b'D' if cursor.take_prefix("DR") => {
-                    let is_of_corner = cursor.take_prefix("2");
+                b'D' if cursor.take_text("DR") => {
+                    let is_of_corner = cursor.take_text("2");
                     cursor.take(b':');
                     let value = scale.length(cursor)?;
                     // The radius of the corner moves no path.
@@ -762,7 +761,7 @@ impl<'a> Program<'a> {
                     let pair = [cursor.letters(), cursor.letters()];
                     match pair.map(str::to_ascii_uppercase).each_ref().map(String::as_str) {
                         ["F", "TCP" | "CONT"] | ["AXIS", "POS"] | ["PATHCTRL", "AXIS"] => {}
-                        ["REFPNT", "TIP"] if cursor.take_prefix("-TIP") => {}
+                        ["REFPNT", "TIP"] if cursor.take_text("-TIP") => {}
                         ["AXIS", "SPAT"] => {
                             let meaning = "angles of the workpiece instead of the axes";
                             return Err(not_read("AXIS SPAT", meaning, "write AXIS POS"));

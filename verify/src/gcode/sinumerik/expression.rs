@@ -70,10 +70,10 @@ const RELATIONS: [&str; 6] = ["==", "<>", ">=", "<=", ">", "<"];
 
 fn comparison(cursor: &mut Cursor, known: &Variables, depth: usize) -> Result<Value, GcodeFault> {
     let left = logic(cursor, known, depth, 0)?;
-    if cursor.take_pair("<<") {
+    if cursor.take_text("<<") {
         return Err(ExpressionFault::Operation { name: "<<".to_owned() }.into());
     }
-    let Some(relation) = RELATIONS.into_iter().find(|relation| cursor.take_pair(relation)) else {
+    let Some(relation) = RELATIONS.into_iter().find(|relation| cursor.take_text(relation)) else {
         return Ok(left);
     };
     let right = logic(cursor, known, depth, 0)?;

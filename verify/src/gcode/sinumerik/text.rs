@@ -1,68 +1,20 @@
 //! The text of a line: a place in it, and the parts that stand before its first word.
 
-/// A place in the text of a line.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Cursor<'a> {
-    text: &'a str,
-    at: usize,
-}
+pub(super) use crate::gcode::cursor::Cursor;
 
 impl<'a> Cursor<'a> {
-    pub(super) fn new(text: &'a str) -> Cursor<'a> {
-        Cursor { text, at: 0 }
-    }
-
-    /// Returns the byte here, a blank included.
-    pub(super) fn byte(&self) -> Option<u8> {
-        self.text.as_bytes().get(self.at).copied()
-    }
-
-    /// Returns the next byte that is no blank, without passing over it.
-    pub(super) fn peek(&mut self) -> Option<u8> {
-        while matches!(self.byte(), Some(b' ' | b'\t')) {
-            self.at += 1;
-        }
-        self.byte()
-    }
-
     /// Returns whether no word follows: at the end of the line, and at a comment.
     pub(super) fn is_at_end(&mut self) -> bool {
         matches!(self.peek(), None | Some(b';'))
     }
 
-    /// Passes over the next byte that is no blank if it is the given one.
-    pub(super) fn take(&mut self, byte: u8) -> bool {
-        let found = self.peek() == Some(byte);
-        self.at += usize::from(found);
-        found
-    }
-
     /// Passes over a `=` that is not the first half of `==`.
     pub(super) fn take_assignment(&mut self) -> bool {
         let is_one = self.peek() == Some(b'=') && !self.rest().starts_with("==");
-        self.at += usize::from(is_one);
+        if is_one {
+            self.advance();
+        }
         is_one
-    }
-
-    /// Passes over an operator of two characters.
-    pub(super) fn take_pair(&mut self, pair: &str) -> bool {
-        self.peek();
-        let found = self.rest().starts_with(pair);
-        self.at += if found { pair.len() } else { 0 };
-        found
-    }
-
-    /// Passes over one byte, which has to be ASCII.
-    pub(super) fn advance(&mut self) {
-        self.at += 1;
-    }
-
-    /// Passes over bytes as long as they satisfy the condition, and returns their text. The condition holds for ASCII only.
-    pub(super) fn take_while(&mut self, condition: impl Fn(u8) -> bool) -> &'a str {
-        let rest = self.rest();
-        let length = rest.bytes().position(|byte| !condition(byte)).unwrap_or(rest.len());
-        self.at += length;
-        &rest[..length]
     }
 
     /// Passes over a name: letters, digits and underscores. It is empty if there is none.
@@ -90,7 +42,7 @@ impl<'a> Cursor<'a> {
     pub(super) fn quoted(&mut self) -> Option<&'a str> {
         let text = self.rest().strip_prefix('"')?;
         let (inside, _) = text.split_once('"')?;
-        self.at += inside.len() + 2;
+        self.advance_by(inside.len() + 2);
         Some(inside)
     }
 
@@ -108,7 +60,7 @@ impl<'a> Cursor<'a> {
                 _ if byte == close => {
                     depth = depth.checked_sub(1)?;
                     if depth == 0 {
-                        self.at += index + 1;
+                        self.advance_by(index + 1);
                         return Some(&rest[1..index]);
                     }
                 }
@@ -117,16 +69,6 @@ impl<'a> Cursor<'a> {
             }
         }
         None
-    }
-
-    /// Returns the rest of the line.
-    pub(super) fn rest(&self) -> &'a str {
-        &self.text[self.at..]
-    }
-
-    /// Returns the number of bytes before this place.
-    pub(super) fn offset(&self) -> usize {
-        self.at
     }
 }
 
@@ -153,7 +95,7 @@ pub(super) fn start(line: &str) -> Start<'_> {
     if matches!(ahead.byte(), Some(b'N' | b'n')) {
         ahead.advance();
         if !ahead.take_while(|byte| byte.is_ascii_digit()).is_empty() {
-            number = Some(&words.rest()[..ahead.offset() - words.offset()]);
+            number = Some(words.text_to(&ahead));
             words = ahead;
         }
     }
