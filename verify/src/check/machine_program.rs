@@ -12,7 +12,7 @@ use crate::gcode::{
     self, BlockLine, Choice, ControlRules, ControlSetup, GcodeError, GcodeFault, Interpreter,
     LengthOffset, Rotation, Rule, Step, StepPath, SubprogramFile, Tcp,
 };
-use crate::machine::{JointError, JointMotion, Letter, Machine, Relation, Setup, Side};
+use crate::machine::{Axis, JointError, JointMotion, Letter, Machine, Relation, Setup, Side};
 use nalgebra::Vector3;
 use resolve::{AnyRapid, Band, Resolved, Resolver};
 use std::collections::{BTreeMap, HashSet};
@@ -222,6 +222,7 @@ impl MachineProgram {
         setup.axes = Letter::ALL.map(|letter| machine.axis(letter).is_some());
         setup.carries_tool = Letter::ALL
             .map(|letter| machine.axis(letter).is_some_and(|axis| axis.side == Side::Tool));
+        setup.tilts = Letter::ALL.map(|letter| machine.axis(letter).is_some_and(Axis::tilts));
         setup.tool_change = machine.tool_change();
         setup.builder_point = machine.builder_point();
         let machine = match setup.rules.get(Rule::RotaryDirection) {

@@ -319,6 +319,7 @@ impl Control {
             axes: setup.axes,
             rotary_axes: RotaryAxes {
                 carries_tool: setup.carries_tool,
+                tilts: setup.tilts,
                 part: setup.work_offsets[0].map_or([None; 6], |origin| origin.map(Some)),
             },
             change_position: setup.tool_change,

@@ -157,6 +157,8 @@ pub struct ControlSetup {
     pub axes: [bool; 6],
     /// The axes that move the tool, and not the part. An origin of such a rotary axis leaves the tool where the machine has it.
     pub carries_tool: [bool; 6],
+    /// The rotary axes that do not turn about Z, and so tilt what they carry.
+    pub tilts: [bool; 6],
     /// Values that variables can have before the program, by name: `#500`, `#<_depth>`, `R1`, `Q1`. Lengths are in the unit of the program. An
     /// [`Interpreter`] takes the first of each.
     pub variables: BTreeMap<String, Vec<f64>>,
@@ -189,6 +191,7 @@ impl Default for ControlSetup {
             rules: ControlRules::default(),
             axes: [true; 6],
             carries_tool: [false; 6],
+            tilts: [false, false, false, true, true, false],
             variables: BTreeMap::new(),
             subprograms: Vec::new(),
             tool_change: None,

@@ -53,8 +53,8 @@ pub struct ControlState {
     pub rotation: Rotation,
     /// The number of tilted planes that have begun before.
     pub plane_starts: usize,
-    /// The tool axis between two positions of the rotary axes, where the program states it: [`Choice::ByAxes`] (ORIAXES) or
-    /// [`Choice::GreatCircle`] (ORIVECT).
+    /// The tool axis between two positions of the rotary axes, where the program states it: [`Choice::ByAxes`] (ORIMKS with ORIAXES) or
+    /// [`Choice::GreatCircle`] (ORIWKS with ORIVECT).
     pub orientation: Option<Choice>,
     /// Set by M126 of Heidenhain: rotary axes turn the shorter way to an absolute position.
     pub shorter_way: bool,
@@ -171,8 +171,22 @@ impl LengthOffset {
 pub(super) struct RotaryAxes {
     /// Set for the axes that carry the tool.
     pub(super) carries_tool: [bool; 6],
+    /// Set for the rotary axes that tilt what they carry: those that do not turn about Z.
+    pub(super) tilts: [bool; 6],
     /// Origin of G54, which is the frame of the part, in machine coordinates.
     pub(super) part: Position,
+}
+
+impl RotaryAxes {
+    /// Returns whether the tool may be tilted: an axis that carries it is not where it turns nothing.
+    pub(super) fn tilts_tool(&self, turns_nothing: [bool; 3]) -> bool {
+        (0..3).any(|k| !turns_nothing[k] && self.tilts[k + 3] && self.carries_tool[k + 3])
+    }
+
+    /// Returns whether tool or part may be tilted.
+    pub(super) fn tilts(&self, turns_nothing: [bool; 3]) -> bool {
+        (0..3).any(|k| !turns_nothing[k] && self.tilts[k + 3])
+    }
 }
 
 impl ControlState {

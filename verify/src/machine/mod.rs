@@ -98,7 +98,7 @@ pub use inverse::{InverseSolution, REACH_TOLERANCE};
 pub use limits::{LimitViolation, SINGULAR_ANGLE, SINGULAR_TURN, SingularPass};
 pub use motion::{JointMotion, LinearPath, Plane};
 
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Point3, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::Path;
@@ -212,6 +212,13 @@ pub struct Axis {
     pub home: Option<f64>,
     /// Speed in rapid traverse, in mm or degrees per minute.
     pub rapid: Option<f64>,
+}
+
+impl Axis {
+    /// Returns whether it is rotary and tilts what it carries: it does not turn about Z.
+    pub(crate) fn tilts(&self) -> bool {
+        self.letter.is_rotary() && self.direction.xy() != Vector2::zeros()
+    }
 }
 
 /// A machine tool with the axes X, Y, Z and up to two rotary axes.

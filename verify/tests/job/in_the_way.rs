@@ -71,7 +71,7 @@ fn an_arc_in_rapid_traverse_is_an_arc() {
 fn an_origin_of_an_axis_of_the_head_turns_the_tool() {
     for (offset, b) in [("[0, 0, -440, 0, 30, 0]", "B0"), ("[0, 0, -440, 0, 0, 0]", "B30")] {
         let text = format!(
-            "G17 G90 G54 G71 G94\nT1 M6\nD1\nS1000 M3\nG0 {b} C0\nG0 X0 Y0 Z100\nTRAORI\nORIAXES\nG54\nG1 Z10 F500\n\
+            "G17 G90 G54 G71 G94\nT1 M6\nD1\nS1000 M3\nG0 {b} C0\nG0 X0 Y0 Z100\nTRAORI\nORIMKS ORIAXES\nG54\nG1 Z10 F500\n\
              G1 X0 Y0 Z200\nTRAFOOF\nG54\nG0 {b} C0\nG0 X0 Y0 Z100\nM30\n"
         );
         let scene = scene("a.mpf", &text, B_HEAD, offset);
@@ -83,7 +83,7 @@ fn an_origin_of_an_axis_of_the_head_turns_the_tool() {
 /// After TRAFOOF the rotary axes stand where the program turns them, whatever tool vector was in force before.
 #[test]
 fn a_tool_vector_ends_with_the_transformation() {
-    let text = "G17 G90 G54 G71 G94\nT1 M6\nD1\nS1000 M3\nG0 B0 C0\nG0 X0 Y0 Z100\nTRAORI\nORIAXES\nG54\n\
+    let text = "G17 G90 G54 G71 G94\nT1 M6\nD1\nS1000 M3\nG0 B0 C0\nG0 X0 Y0 Z100\nTRAORI\nORIMKS ORIAXES\nG54\n\
                 G1 X0 Y0 Z100 A3=0.5 B3=0 C3=0.8660254 F500\nTRAFOOF\nG54\nG0 B0 C0\nG0 X0 Y0 Z100\nG1 Z50\nG0 Z100\nM30\n";
     let scene = scene("a.mpf", text, B_HEAD, "[0, 0, -440]");
     let scene = scene.obstacle([-4.0, -4.0, 40.0], [4.0, 4.0, 60.0]);

@@ -102,7 +102,7 @@ fn a_tool_change_under_tool_centre_point_control_moves_axes() {
         (
             "a.mpf",
             sinumerik(&format!(
-                "G0 A0 C0\nG0 X0 Y0 Z100\nTRAORI\nORIAXES\nG54\nG0 X0 Y0 Z5\nG0 Z100\n{change}TRAFOOF\nG54\nSUPA G0 Z0"
+                "G0 A0 C0\nG0 X0 Y0 Z100\nTRAORI\nORIMKS ORIAXES\nG54\nG0 X0 Y0 Z5\nG0 Z100\n{change}TRAFOOF\nG54\nSUPA G0 Z0"
             )),
             SIEMENS,
         ),
@@ -120,7 +120,7 @@ fn a_tool_change_under_tool_centre_point_control_moves_axes() {
 #[test]
 fn an_axis_at_zero_of_a_turned_work_offset_is_turned() {
     let traori = sinumerik(
-        "G55\nG0 A0 C0\nG0 X30 Y0 Z100\nTRAORI\nORIAXES\nG54\nG1 Z5 F500\nG1 Z100\nTRAFOOF\nG54\nSUPA G0 Z-100",
+        "G55\nG0 A0 C0\nG0 X30 Y0 Z100\nTRAORI\nORIMKS ORIAXES\nG54\nG1 Z5 F500\nG1 Z100\nTRAFOOF\nG54\nSUPA G0 Z-100",
     );
     let m128 = klartext(
         "CYCL DEF 247 DATUM SETTING ~\n  Q339=+2 ;DATUM NUMBER\nL A+0 C+0 R0 FMAX M3\nL X+30 Y+0 Z+100 R0 FMAX\nM128\n\

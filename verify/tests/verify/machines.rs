@@ -85,7 +85,7 @@ fn native_programs_of_sinumerik_turn_the_tool() {
     assert!((pose.axis() - expected).norm() < 1e-12, "{pose:?}");
     let tip = expected * -1.0 + Vector3::new(0.0, 0.0, 5.0);
     assert!((pose.tip().coords - tip).norm() < 1e-12, "{pose:?}");
-    for (word, is_followed) in [("ORIAXES", true), ("ORIVECT", false)] {
+    for (word, is_followed) in [("ORIMKS ORIAXES", true), ("ORIWKS ORIVECT", false)] {
         let vectors =
             native(&format!("TRAORI\nG54\nORIWKS {word}\nG1 X1 Y2 Z3 A3=0 B3=-1 C3=SQRT(3)"));
         let pose = last_pose(&vectors);

@@ -252,7 +252,7 @@ faults! {
         /// A tool axis that turns on a great circle, which is not followed.
         #[code = V0414]
         #[error(
-            "the tool axis turns on a great circle under TRAORI (ORIVECT): state `tool_orientation` of the control, if it turns each axis \
+            "the tool axis may turn on a great circle under TRAORI (ORIWKS, ORIVECT): state `tool_orientation` of the control, if it turns each axis \
              in proportion (ORIAXES)"
         )]
         GreatCircle,

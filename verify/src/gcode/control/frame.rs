@@ -341,8 +341,8 @@ impl Control {
         self.change(|state| state.length = LengthOffset::Off);
     }
 
-    /// Executes ORIAXES or ORIVECT.
-    pub(in crate::gcode) fn interpolate_orientation(&mut self, choice: Choice) {
-        self.change(|state| state.orientation = Some(choice));
+    /// Sets the tool axis between two positions of the rotary axes, if the program states it.
+    pub(in crate::gcode) fn interpolate_orientation(&mut self, choice: Option<Choice>) {
+        self.change(|state| state.orientation = choice);
     }
 }

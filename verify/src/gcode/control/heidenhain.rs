@@ -150,14 +150,13 @@ impl Control {
     pub(in crate::gcode) fn retract(&mut self, distance: Option<f64>, rapid: bool) {
         let at_zero = self.state.turns_nothing(self.position, &self.rotary_axes);
         // The axis of a table, or of a head that is turned about z, leaves the tool along z of the machine.
-        let is_upright =
-            [0, 1].into_iter().all(|k| at_zero[k] || !self.rotary_axes.carries_tool[k + 3]);
+        let is_upright = !self.rotary_axes.tilts_tool(at_zero);
         // Positions that turn with the table have another z, but for that of a plane to which the tool is aligned.
         let is_along_z = match self.state.rotation {
             Rotation::Tilted { aligned, .. } => aligned,
             Rotation::Off | Rotation::Plane { .. } => {
                 let turns_with_table = self.state.turns_with_workpiece();
-                is_upright && (!turns_with_table || at_zero[..2] == [true; 2])
+                is_upright && !(turns_with_table && self.rotary_axes.tilts(at_zero))
             }
         };
         let end = self.position;

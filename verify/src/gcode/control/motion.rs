@@ -286,6 +286,21 @@ impl Control {
                 return Err(combination("G53", condition, "write G0 in the block"));
             }
         }
+        if let Some(letter) = AXES.into_iter().find(|letter| block.own_distance(*letter).is_some())
+        {
+            let condition = "its block has AC, IC or DC of an axis";
+            let remedy = "write the axis without them, or without SUPA";
+            return Err(combination(format!("G53 with {letter}"), condition, remedy));
+        }
+        let is_turned =
+            self.rotary_axes.tilts_tool(self.state.turns_nothing(self.position, &self.rotary_axes));
+        if is_turned
+            && self.state.length.length() != Some(0.0)
+            && self.choice(Rule::MachineCoordinates) == Choice::WithLength
+        {
+            let condition = "the head is turned, and the length of the tool counts along it";
+            return Err(combination("SUPA", condition, "turn it back before, or write D0"));
+        }
         let axes = self.take_axes(block);
         if axes.iter().all(Option::is_none) {
             return Err(missing("G53", "an axis word"));

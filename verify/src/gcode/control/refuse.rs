@@ -291,17 +291,16 @@ impl Control {
 
     /// Refuses the first position after G68 or G69, if it is not that of both axes of the plane.
     pub(super) fn check_after_rotation(&mut self, block: &Block) -> Result<(), GcodeFault> {
-        let is_absolute = !self.modal.incremental;
-        let given =
-            self.modal.plane.axes().map(|axis| {
-                block.value(AXES[axis]).is_some_and(|value| is_absolute || value != 0.0)
-            });
+        let axes = self.modal.plane.axes().map(|axis| AXES[axis]);
+        let is_incremental = axes.map(|letter| self.is_incremental(block, letter));
+        let given = [0, 1]
+            .map(|k| block.value(axes[k]).is_some_and(|value| !is_incremental[k] || value != 0.0));
         // An arc or a cycle without them is at the present position.
         let is_straight = matches!(self.modal.motion, Some(Motion::Rapid | Motion::Feed));
         if !self.rotation_changed || given == [false; 2] && is_straight {
             return Ok(());
         }
-        if self.modal.incremental || given != [true; 2] {
+        if is_incremental.contains(&true) || given != [true; 2] {
             let condition =
                 "it is the first after G68 or G69, and not of both axes of the plane in G90";
             let remedy = "write both in G90";

@@ -44,6 +44,15 @@ const NATIVE: [(Rule, Choice); 4] = [
     (Rule::MachineCoordinates, Choice::WithLength),
 ];
 
+/// The frame of tool vectors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum OrientationFrame {
+    /// ORIWKS.
+    Workpiece,
+    /// ORIMKS.
+    Machine,
+}
+
 /// A program, and the place of its execution.
 #[derive(Clone, Debug)]
 pub(super) struct Program<'a> {
@@ -61,8 +70,10 @@ pub(super) struct Program<'a> {
     switch: Option<&'a str>,
     /// The cycle of `MCALL`, which each motion calls.
     modal_hole: Option<Hole>,
-    /// Set by ORIMKS: tool vectors are in the frame of the machine.
-    machine_orientation: bool,
+    /// ORIWKS or ORIMKS, once one is stated.
+    orientation_frame: Option<OrientationFrame>,
+    /// ORIAXES or ORIVECT, once one is stated.
+    interpolation: Option<Choice>,
     /// The line of the `FOR` whose `ENDFOR` was executed last, until that line is executed.
     stepping: Option<usize>,
     /// The last value of each loop that counts, by the line of its `FOR`.
@@ -189,7 +200,8 @@ impl<'a> Program<'a> {
             block: Block::default(),
             switch: None,
             modal_hole: None,
-            machine_orientation: false,
+            orientation_frame: None,
+            interpolation: None,
             stepping: None,
             ends: HashMap::new(),
         })
@@ -371,17 +383,20 @@ impl<'a> Program<'a> {
             "ENDLABEL" => {}
             "DEF" => self.variables.define(words)?,
             "CALL" if words.take_name("BLOCK") => {
-                let first = words.name();
+                let first = self.stated_name("CALL BLOCK", words)?;
                 if !words.take_name("TO") {
                     return Err(missing("CALL BLOCK", "two labels with TO between"));
                 }
-                let last = Some(words.name());
+                let last = Some(self.stated_name("CALL BLOCK", words)?);
                 let repeat = RepeatWords { first, last, is_block: false, times: 1 };
                 self.flow.repeat(repeat, line)?;
             }
             "CALL" => {
                 words.peek();
-                let called = words.quoted().unwrap_or_else(|| words.name());
+                let called = match words.quoted() {
+                    Some(quoted) => quoted,
+                    None => self.stated_name("CALL", words)?,
+                };
                 match self.subprogram(called)? {
                     Some(callee) => self.call(callee, words)?,
                     None => return Err(no_subprogram(called)),
@@ -443,18 +458,23 @@ impl<'a> Program<'a> {
         Ok(true)
     }
 
+    /// Reads the name of a label or a program after a word.
+    ///
+    /// # Errors
+    /// If it is missing, or that of a variable, whose text is the name.
+    fn stated_name(&self, word: &str, words: &mut Cursor<'a>) -> Result<&'a str, GcodeFault> {
+        let name = words.name();
+        if !name.is_empty() && self.variables.find(name).is_none() {
+            return Ok(name);
+        }
+        let remedy = "write the label, the block number or the program itself after it";
+        Err(not_read(word.to_ascii_uppercase(), "a name that is computed", remedy))
+    }
+
     /// Executes a jump after its word.
     fn jump(&mut self, word: &str, words: &mut Cursor<'a>, line: usize) -> Result<(), GcodeFault> {
         let direction = jump_direction(word)?;
-        let target = words.name();
-        if target.is_empty() || self.variables.find(target).is_some() {
-            let meaning = "a jump to a name that is computed";
-            return Err(not_read(
-                word.to_ascii_uppercase(),
-                meaning,
-                "write a label or a block number after it",
-            ));
-        }
+        let target = self.stated_name(word, words)?;
         let is_found = self.flow.jump(target, line, direction)?;
         if !is_found && !word.eq_ignore_ascii_case("GOTOC") {
             return Err(no_target(target));

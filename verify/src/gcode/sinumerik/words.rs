@@ -3,7 +3,7 @@
 use super::expression::{Value, expression, number, unsigned};
 use super::table::{Use, use_of};
 use super::text::Cursor;
-use super::{Program, no_subprogram, undefined};
+use super::{OrientationFrame, Program, no_subprogram, undefined};
 use crate::gcode::block::{Block, Code, Distance, Group, Keyword, Number};
 use crate::gcode::control::{Control, Corner, CornerShape, FrameStep};
 use crate::gcode::error::{combination, missing, not_read};
@@ -30,8 +30,6 @@ struct Words {
     offset: Option<WorkOffset>,
     /// Set by G60, and false by G64 and its like.
     exact_path: Option<bool>,
-    /// ORIAXES and ORIVECT.
-    orientation: Option<Choice>,
     /// M17.
     returns: bool,
 }
@@ -44,6 +42,16 @@ struct AxisValue {
 }
 
 impl<'a> Program<'a> {
+    /// Returns the tool axis between two positions of the rotary axes, if it is that on every machine: ORIMKS and ORIWKS decide it as
+    /// delivered, and ORIAXES and ORIVECT where MD21104 is set (*NC programming*, section on the reference of the orientation axes).
+    fn orientation(&self) -> Option<Choice> {
+        match (self.orientation_frame?, self.interpolation?) {
+            (OrientationFrame::Machine, Choice::ByAxes) => Some(Choice::ByAxes),
+            (OrientationFrame::Workpiece, Choice::GreatCircle) => Some(Choice::GreatCircle),
+            _ => None,
+        }
+    }
+
     /// Executes a block.
     pub(super) fn words(
         &mut self,
@@ -75,24 +83,14 @@ impl<'a> Program<'a> {
                 _ => self.name(&mut cursor, block, &mut words, control)?,
             }
         }
-        let Words {
-            vector,
-            edge,
-            speed,
-            offset,
-            exact_path,
-            orientation,
-            returns,
-            assigns,
-            ignores,
-        } = words;
+        let Words { vector, edge, speed, offset, exact_path, returns, assigns, ignores } = words;
         if let Some(speed) = speed
             && block.code_of(Group::Dwell).is_none()
         {
             block.add('S', plain(speed))?;
         }
         if vector.iter().any(Option::is_some) {
-            if self.machine_orientation {
+            if self.orientation_frame == Some(OrientationFrame::Machine) {
                 let condition = "ORIMKS is in force, under which it is in the frame of the machine";
                 return Err(combination("A3=", condition, "write ORIWKS before"));
             }
@@ -111,9 +109,6 @@ impl<'a> Program<'a> {
         }
         if is_free_edge {
             control.deselect_length();
-        }
-        if let Some(choice) = orientation {
-            control.interpolate_orientation(choice);
         }
         if let Some(offset) = offset {
             control.settable_offset(offset, block)?;
@@ -294,16 +289,18 @@ impl<'a> Program<'a> {
             "TRAORI" => transformation(cursor, block, Keyword::TransformationOn, name),
             "TRAFOOF" => transformation(cursor, block, Keyword::TransformationOff, name),
             "ORIWKS" | "ORIMKS" => {
-                self.machine_orientation = upper == "ORIMKS";
-                control.notes.add(control.block(), NoteKind::PassedOver { word: upper });
+                self.orientation_frame = Some(match upper.as_str() {
+                    "ORIMKS" => OrientationFrame::Machine,
+                    _ => OrientationFrame::Workpiece,
+                });
+                control.interpolate_orientation(self.orientation());
                 Ok(())
             }
-            "ORIAXES" => {
-                words.orientation = Some(Choice::ByAxes);
-                Ok(())
-            }
-            "ORIVECT" | "ORIPLANE" => {
-                words.orientation = Some(Choice::GreatCircle);
+            "ORIAXES" | "ORIVECT" | "ORIPLANE" => {
+                let is_by_axes = upper == "ORIAXES";
+                self.interpolation =
+                    Some(if is_by_axes { Choice::ByAxes } else { Choice::GreatCircle });
+                control.interpolate_orientation(self.orientation());
                 Ok(())
             }
             "CR" if cursor.take_assignment() => {

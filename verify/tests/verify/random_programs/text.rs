@@ -55,7 +55,7 @@ impl Control {
             }
             Language::Sinumerik => {
                 self.add(format!("G17 G90 G54 G7{} G94 F500", if is_inch { "00" } else { "10" }));
-                self.add("T1 M6\nD1\nS1000 M3\nORIAXES");
+                self.add("T1 M6\nD1\nS1000 M3\nORIMKS ORIAXES");
             }
             _ => {
                 self.add(format!(

@@ -4,7 +4,7 @@ use super::super::{BlindWay, Level, StepFault};
 use super::{Band, Resolved, Resolver, UPRIGHT};
 use crate::gcode::{Position, Step};
 use crate::machine::{Axis, Chain, JointMotion, Joints, Side};
-use nalgebra::{Vector2, Vector3};
+use nalgebra::Vector3;
 
 impl Resolver<'_> {
     /// Returns a step with joints at its ends on which Z is known, and X, Y or rotary axes are not. The tool is nowhere below its levels,
@@ -95,7 +95,7 @@ impl Resolver<'_> {
         });
         let level_links = level_links.min().unwrap_or(usize::MAX);
         // Axes about Z turn the part, and change no height while it is not tilted.
-        let is_turning = self.rotary_axes(turns).any(|axis| !is_tilting(axis));
+        let is_turning = self.rotary_axes(turns).any(|axis| !axis.tilts());
         let mut levels = self.levels(chain, joints);
         for (link, level) in levels.iter_mut().enumerate() {
             if link >= level_links || is_turning && level.up != Vector3::z() {
@@ -116,7 +116,7 @@ impl Resolver<'_> {
 
     /// Returns the axes that turn, and tilt the part or the tool.
     fn tilting<'s>(&'s self, turns: &'s dyn Fn(usize) -> bool) -> impl Iterator<Item = &'s Axis> {
-        self.rotary_axes(turns).filter(|axis| is_tilting(axis))
+        self.rotary_axes(turns).filter(|axis| axis.tilts())
     }
 
     /// Returns the levels of the tip at joint values, relative to each link of the table and to the part.
@@ -126,11 +126,6 @@ impl Resolver<'_> {
         let levels = links.chain([Ok(*chain)]).map(|chain| chain.ok().and_then(level));
         levels.map(|level| level.unwrap_or(Level::BELOW)).collect()
     }
-}
-
-/// Returns whether an axis tilts what it carries.
-fn is_tilting(axis: &Axis) -> bool {
-    axis.direction.xy() != Vector2::zeros()
 }
 
 /// Returns the level of the tip at joint values.
