@@ -168,6 +168,10 @@ struct Reader {
     is_creo: bool,
     /// The arc that the last statement ended.
     ended_arc: Option<Arc>,
+    /// Set by an arc that turns against its normal, as older post processors state one for both directions.
+    is_one_sided: bool,
+    /// Set by an arc whose angle is that of both directions.
+    turns_either_way: bool,
     /// Number of chords of all arcs.
     chords: usize,
     /// The direction in which CATIA's next arc begins.
@@ -180,6 +184,8 @@ struct Reader {
     has_moved: bool,
     /// Statements about the present tool, by word: the line and the arguments.
     tool: BTreeMap<String, (usize, Vec<String>)>,
+    /// Those about the tools before, by their numbers.
+    tools: BTreeMap<u32, BTreeMap<String, (usize, Vec<String>)>>,
     /// Statements about the tool since the last position.
     pending: Vec<ToolStatement>,
     /// Creo's coordinate system, as [`Reader::coordinate_system`] writes it.
@@ -328,8 +334,16 @@ impl Reader {
                 let ended_arc = self.ended_arc.take().filter(|_| self.is_creo && !rapid);
                 let further = || ended_arc?.continued(&before?, &pose, unit);
                 let stops = match (self.arc.take().or_else(further), &self.cycle) {
-                    (Some(arc), None) => {
-                        let (poses, arc) = arc.stops(before.as_ref(), &pose, unit, self.chords)?;
+                    (Some(stated), None) => {
+                        let (poses, arc) =
+                            stated.stops(before.as_ref(), &pose, unit, self.chords)?;
+                        self.is_one_sided |= arc.is_reversed(&stated);
+                        self.turns_either_way |=
+                            before.is_some_and(|before| stated.fits_both_ways(&before, &pose));
+                        if self.is_one_sided && self.turns_either_way {
+                            let what = "of half a turn, or another one, turns against its normal, which the file states for both directions";
+                            return Err(ProgramFault::Arc { what });
+                        }
                         self.chords += poses.len();
                         self.ended_arc = Some(arc);
                         poses.into_iter().map(|pose| Stop { pose, rapid }).collect()
@@ -454,6 +468,15 @@ impl Reader {
                     ProgramFault::ToolNumber { argument: unquoted(&argument) },
                 ));
             };
+            // One number is one tool, also where others come between.
+            self.tools.extend(self.tape.tool.map(|number| (number, known)));
+            if let Some(known) = self.tools.get(&number) {
+                let mut again =
+                    pending.iter().filter(|statement| known.contains_key(&statement.word));
+                if let Some(fault) = again.find_map(|statement| statement.conflict(known, false)) {
+                    return Err(fault);
+                }
+            }
             // The same tool again goes on from where it is.
             if self.tape.tool != Some(number) {
                 let unit = self.tape.unit;
@@ -657,20 +680,34 @@ fn skip_statement(word: &str, arguments: &str) -> Result<String, ProgramFault> {
     }
 }
 
-/// Words of controls that can move the tool or change what positions mean, without a number: of Sinumerik, Heidenhain and macros.
+/// Words of controls that can move the tool, change what positions mean, or lead elsewhere, without a number: of Sinumerik, Heidenhain and
+/// macros.
 #[rustfmt::skip]
-const CONTROL_WORDS: [&str; 31] = [
+const CONTROL_WORDS: [&str; 41] = [
     "ATRANS", "TRANS", "AROT", "ROT", "AMIRROR", "MIRROR", "ASCALE", "SCALE", "SUPA", "POS", "POSA", "SPOS", "MCALL", "EXTCALL",
     "TRAORI", "TRAFOOF", "TRANSMIT", "TRACYL", "CALL", "CYCL", "PLANE", "LBL", "L", "LN", "LP", "CC", "CR", "IF", "WHILE", "GOTO",
-    "REPEAT",
+    "REPEAT", "GOTOF", "GOTOB", "GOTOC", "GOTOS", "RND", "CHR", "CHF", "APPR", "DEP", "CASE",
 ];
 
-/// Returns whether a text, in capitals, could be a block for a control: if it has a code, a word of a control or a variable, or words
-/// with numbers alone. A comment in parentheses and prose are none.
+/// Returns whether a text, in capitals, could be a block for a control: if it has a code, a word of a control, a variable or a call, or
+/// nothing but letters with numbers. A comment in parentheses and prose are none.
 fn could_move(text: &str) -> bool {
-    if text.starts_with('(') && text.find(')') == Some(text.len() - 1) {
-        return false;
+    // A parenthesis after a blank is a comment, and one after a name has the arguments of a call.
+    let mut rest = String::new();
+    let mut depth = 0;
+    for character in text.chars() {
+        match character {
+            '(' if depth > 0 || !rest.ends_with(|c: char| c.is_ascii_alphanumeric()) => depth += 1,
+            ')' if depth > 0 => depth -= 1,
+            _ if depth == 0 => rest.push(character),
+            _ => {}
+        }
     }
+    rest.split(';').any(|block| is_block(block.trim()))
+}
+
+/// Returns whether a text without comments could be a block.
+fn is_block(text: &str) -> bool {
     let has_code = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '.').any(|word| {
         let number = word.strip_prefix("CYCLE");
         let number = number.or_else(|| word.strip_prefix(['G', 'M', 'O', 'T', 'N', 'L', 'P']));
@@ -684,11 +721,29 @@ fn could_move(text: &str) -> bool {
             name.next().is_some_and(|c| c.is_ascii_alphabetic()) && name.all(|c| c.is_ascii_digit())
         })
     });
-    let mut words = text.split_whitespace().peekable();
-    has_code
-        || assigns
-        || text.contains(['#', '%'])
-        || words.peek().is_some() && words.all(is_word_of_block)
+    // The name of a subprogram calls it, alone or with arguments.
+    let is_name = |text: &str| {
+        text.starts_with(|c: char| c.is_ascii_alphabetic())
+            && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+    };
+    let is_call = is_name(text.split_once('(').map_or(text, |(name, _)| name.trim_end()));
+    has_code || assigns || is_call || text.contains(['#', '%']) || has_words_alone(text)
+}
+
+/// Returns whether a text is nothing but letters with numbers, which blanks need not part.
+fn has_words_alone(text: &str) -> bool {
+    let compact: String = text.chars().filter(|c| !c.is_whitespace() && *c != '*').collect();
+    let mut rest = compact.trim_start_matches('/');
+    let mut count = 0;
+    while let Some(after) = rest.strip_prefix(|c: char| c.is_ascii_alphabetic()) {
+        let end = after.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(after.len());
+        let (number, next) = after.split_at(end);
+        if number.parse::<f64>().is_err() {
+            return false;
+        }
+        (rest, count) = (next, count + 1);
+    }
+    rest.is_empty() && count > 0
 }
 
 /// Returns whether a word is a letter with a number.

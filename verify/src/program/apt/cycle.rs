@@ -21,8 +21,11 @@ const CHORD_TOLERANCE: f64 = 2e-5;
 /// Largest number of chords of an arc, as in G-code.
 const MAX_CHORDS: f64 = 100_000.0;
 
-/// Largest difference of the radii at the ends of an arc: as a fraction, and in mm.
-const RADII: [f64; 2] = [1e-3, 0.01];
+/// Largest difference of the radii at the ends of an arc, and of the ways that controls make of it, in mm.
+const RADII: f64 = 1e-3;
+
+/// Least step of coordinates, in mm. An arc between two positions that are nearer can be a whole turn.
+const LEAST_STEP: f64 = 5e-4;
 
 /// A drilling cycle. Lengths are along the tool axis from the point of a hole.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -238,8 +241,21 @@ impl Arc {
     fn turn(&self, from: &Pose, to: &Pose) -> f64 {
         let [from, to] = [from, to].map(|pose| self.arm(pose).0);
         let turn = from.cross(&to).dot(&self.normal).atan2(from.dot(&to));
-        let is_full = (from - to).norm() < 1e-6 * from.norm();
-        if is_full { TAU } else { turn.rem_euclid(TAU) }
+        if from == to { TAU } else { turn.rem_euclid(TAU) }
+    }
+
+    /// Returns whether the arc was turned about the other normal than `stated` has, which states the angle.
+    pub(super) fn is_reversed(&self, stated: &Arc) -> bool {
+        self.normal != stated.normal
+    }
+
+    /// Returns whether its angle is that of both directions: half a turn, or a whole one on a helix.
+    pub(super) fn fits_both_ways(&self, before: &Pose, end: &Pose) -> bool {
+        let rises = self.arm(before).1 != self.arm(end).1;
+        self.angle.is_some_and(|angle| {
+            (angle - PI).abs() <= 2.0 * ANGLE_TOLERANCE
+                || rises && angle > TAU - 2.0 * ANGLE_TOLERANCE
+        })
     }
 
     /// Returns the way from the axis of the arc to a position, and its height along the axis.
@@ -261,9 +277,16 @@ impl Arc {
 
     /// Returns the radii at two positions, if they are one up to rounding.
     fn radii(&self, before: &Pose, end: &Pose, unit: Option<Unit>) -> Option<[f64; 2]> {
-        let radii = [before, end].map(|pose| self.arm(pose).0.norm());
-        let allowed = (RADII[0] * radii[0]).max(RADII[1] / scale(unit));
-        (radii[0] > 0.0 && (radii[0] - radii[1]).abs() <= allowed).then_some(radii)
+        let arms = [before, end].map(|pose| self.arm(pose).0);
+        let radii = arms.map(|arm| arm.norm());
+        let difference = (radii[0] - radii[1]).abs();
+        // A control that moves the centre, so that both radii are one, moves it along the chord.
+        let shift = match difference > 0.0 {
+            true => difference * (radii[0] + radii[1]) / (2.0 * (arms[0] - arms[1]).norm()),
+            false => 0.0,
+        };
+        let is_one = difference.max(shift) <= RADII / scale(unit);
+        (radii[0] > 0.0 && is_one).then_some(radii)
     }
 
     /// Returns the positions along the arc, the last of which is its end, and the arc on from there. `chords` is the number of chords of
@@ -288,6 +311,10 @@ impl Arc {
         let Some([start_radius, end_radius]) = self.radii(before, end, unit) else {
             return Err(arc("has another radius at its start than at its end"));
         };
+        let gap = (before.tip() - end.tip()).norm();
+        if gap > 0.0 && gap < LEAST_STEP / scale(unit) && self.angle.is_none() {
+            return Err(arc("ends so near its start that it could be a whole turn"));
+        }
         let mut sweep = self.turn(before, end);
         if let Some(angle) = self.angle
             && (sweep - angle).abs() > ANGLE_TOLERANCE
