@@ -32,6 +32,9 @@ struct TimedFinding {
     kind: FindingKind,
 }
 
+/// Number of errors of a trajectory up to which a certifier need not find an excess of depth ([`Certifier::check_motion`]).
+const SWEEP_ERRORS: f64 = 8.0;
+
 /// Largest number of pieces of a box that are halved.
 const MAX_PIECES: usize = 1 << 14;
 
@@ -89,6 +92,12 @@ impl<'a> Checker<'a> {
                     let FreeSpace { reach, symmetry, .. } = self.free_space;
                     let trajectory = JointTrajectory::new(path, symmetry, reach);
                     found = self.contacts(step.rapid, &trajectory, self.verifier.resolution);
+                    // What is as deep as the error of the path need not be found.
+                    let missed = SWEEP_ERRORS * trajectory.error() * self.verifier.lipschitz();
+                    if found.is_empty() && missed > self.verifier.resolution {
+                        let undecided = self.undecided();
+                        found = undecided.map(|kind| TimedFinding { time: 0.5, kind }).collect();
+                    }
                 }
             }
             MovePath::Box(path) => match Motion::with_spin(&path.pose(0.0), &path.pose(1.0)) {

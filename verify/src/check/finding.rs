@@ -55,6 +55,8 @@ pub struct VerifyReport {
     /// Set if nothing could have been found: every surface may be as deep as possible, less the resolution, in
     /// all modes that the program uses.
     pub unrestricted: bool,
+    /// The surfaces that are nowhere as deep as the tolerance, so that no finding of them is possible.
+    pub unchecked_surfaces: Vec<SurfaceId>,
 }
 
 impl VerifyReport {

@@ -505,6 +505,15 @@ impl MachineProgram {
                 summary.add_feed(&step, self.off_is_tip);
             }
             let arrives = matches!(resolved, Resolved::Arrival(..));
+            // What is known of a way, and the other curves of an arc, keep the limits, too.
+            let further: Vec<&JointMotion> = match &resolved {
+                Resolved::Arrival(rest, _) | Resolved::Loaded(rest) => vec![rest],
+                Resolved::Band(band) => band.curves.iter().map(|(curve, _)| curve).collect(),
+                _ => Vec::new(),
+            };
+            for violation in further.into_iter().flat_map(JointMotion::check_limits) {
+                summary.add_violation(step.block(), violation);
+            }
             let motions = match resolved {
                 Resolved::ToolChange => continue,
                 Resolved::Loaded(_) if is_empty => continue,

@@ -278,6 +278,18 @@ impl<'a> Verifier<'a> {
         info.depth.lipschitz.unwrap_or(unproved).max(1.0)
     }
 
+    /// Returns the surfaces that nothing states an allowance for and that are nowhere as deep as the tolerance, as the thin disc of a saw:
+    /// no finding of them is possible in feed or in rapid traverse, as far as `modes` has them in this order.
+    fn unchecked_surfaces(&self, modes: [bool; 2], max_depths: &[f64]) -> Vec<SurfaceId> {
+        let modes = || [false, true].into_iter().filter(|mode| modes[usize::from(*mode)]);
+        let is_unchecked = |index: &usize| {
+            self.allowed[*index].is_none()
+                && modes()
+                    .any(|rapid| self.limits(rapid)[*index] + self.resolution >= max_depths[*index])
+        };
+        (0..self.allowed.len()).filter(is_unchecked).map(SurfaceId).collect()
+    }
+
     /// Returns the depth that each surface is allowed.
     fn limits(&self, rapid: bool) -> Vec<f64> {
         let limits = self.allowed.iter().map(|allowed| {
@@ -387,6 +399,7 @@ impl<'a> MoveCheck<'a> {
             approach: self.approach.finish(),
             findings: self.findings,
             inside_known: verifier.bvh.has_inside(),
+            unchecked_surfaces: verifier.unchecked_surfaces(modes, &max_depths),
             unrestricted: count > 0 && !verifier.restricts(modes, &max_depths),
         })
     }

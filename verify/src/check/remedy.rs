@@ -76,6 +76,11 @@ impl Verifier<'_> {
         let FindingKind::Deep { surface, depth, .. } = finding.kind else { return None };
         let allowed = self.limits(finding.rapid)[surface.0];
         let mut certifier = Certifier::new(self.bvh, self.tool).ok()?.with_budget(self.budget);
+        // The other surfaces may be anywhere but inside, where no depth of a triangle tells of a surface.
+        for (index, known) in self.tool.info().surfaces.iter().enumerate() {
+            let limit = if index == surface.0 { allowed + self.resolution } else { f64::INFINITY };
+            certifier = certifier.with_allowance(&known.name, limit).ok()?;
+        }
         let mut is_clear = |travel: f64| {
             let tip = finding.pose.tip() + finding.pose.axis() * travel;
             let pose = if finding.pose.has_spin() {
@@ -89,8 +94,7 @@ impl Verifier<'_> {
                 let found = certifier.clearance_of(&[surface], &pose, tolerance);
                 return found.is_ok_and(|found| found.distance.low >= -allowed - self.resolution);
             }
-            let found = certifier.deepest_on(surface, &pose, tolerance);
-            found.is_ok_and(|found| found.depth.high <= allowed + self.resolution)
+            matches!(certifier.check_pose(&pose), PoseVerdict::Clear | PoseVerdict::SurfaceOnly)
         };
         let excess = (depth.high - allowed).max(self.resolution);
         let longest = 2.0 * self.reach();

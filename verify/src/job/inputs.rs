@@ -11,7 +11,7 @@ use super::{
 use crate::gcode::WorkOffset;
 use crate::machine::{BodyShape, Machine};
 use crate::stock::RemainingPoints;
-use crate::{Gap, GapWeight};
+use crate::{Gap, GapWeight, MachineProgram};
 use nalgebra::{Point3, Vector3};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -352,9 +352,13 @@ pub(super) fn mesh(file: &Path, unit: Unit) -> Result<Mesh, JobError> {
 
 /// Returns the blank that a program states, in a unit.
 fn blank(program: &Program, unit: Unit) -> Result<[Point3<f64>; 2], JobError> {
-    let stated = program.readings().first().and_then(|reading| reading.summary().blank);
+    let summary = program.readings().first().map(MachineProgram::summary);
+    // Its corners are in the coordinates in force there, which are those of the part under G54 alone.
+    if let Some(line) = summary.and_then(|summary| summary.other_offset) {
+        return Err(JobError::BlankOffset { line });
+    }
     let factor = Unit::Millimetre.factor_to(unit);
-    match stated {
+    match summary.and_then(|summary| summary.blank) {
         Some(corners) => Ok(corners.map(|corner| Point3::from(corner) * factor)),
         None => Err(JobError::NoBlank),
     }

@@ -546,6 +546,16 @@ faults! {
             /// The program.
             file: String,
         },
+        /// A blank of a program that selects another work offset than G54.
+        #[code = J0136]
+        #[error(
+            "line {line}: another work offset than G54 is in force, and the coordinates of the blank (`blank = true`) are that of one of them: state \
+             the stock by a `box` in the frame of the part"
+        )]
+        BlankOffset {
+            /// The line of the first step under it, 1-based.
+            line: usize,
+        },
     }
 }
 

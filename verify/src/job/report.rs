@@ -264,6 +264,13 @@ impl JobReport<'_> {
             }
             if pair.report.unrestricted {
                 reasons.push(NoVerdict::Unrestricted);
+            } else if !self.job.anyway && !pair.report.unchecked_surfaces.is_empty() {
+                let info = self.info(pair);
+                let names = pair.report.unchecked_surfaces.iter();
+                let names = names.map(|surface| &*info.surface(*surface).name);
+                let tool = info.name.to_string();
+                let surfaces = names.collect::<Vec<_>>().join(", ");
+                reasons.push(NoVerdict::SmallSurfaces { tool, surfaces });
             }
         }
         let parts = || pairs.iter().filter(|pair| self.is_tool_at_part(pair));
@@ -340,6 +347,20 @@ faults! {
         #[code = V0205]
         #[error("no motion could be checked")]
         NoMotion,
+        /// Surfaces that are nowhere as deep as the tolerance, such as those of a thin disc.
+        ///
+        /// However far they are in the material, no finding of them is possible.
+        #[code = V0206]
+        #[error(
+            "{surfaces} of {tool} can nowhere be deeper than what is allowed, so they are not checked: lower the tolerance, state what they may \
+             have by `allow`, or accept it with `--anyway`"
+        )]
+        SmallSurfaces {
+            /// The tool.
+            tool: String,
+            /// The names of the surfaces.
+            surfaces: String,
+        },
     }
 }
 

@@ -10,6 +10,9 @@ use nalgebra::Vector3;
 /// controls are given to 1e-3 mm.
 const TOLERANCE: f64 = 1e-4;
 
+/// The same of a rotary joint, in degrees: increments are sums of rounded numbers.
+const ANGLE_TOLERANCE: f64 = 1e-6;
+
 /// Largest number of intervals that are examined for one motion.
 const MAX_INTERVALS: usize = 1 << 16;
 
@@ -45,7 +48,7 @@ struct TimeSpan {
 
 impl JointMotion {
     /// Returns the axes that leave their limits during the motion, each limit at most once. With an empty
-    /// list, no rotary joint exceeds a limit, and no linear joint does by more than 1e-4 mm and rounding.
+    /// list, no rotary joint exceeds a limit by more than 1e-6°, and no linear joint does by more than 1e-4 mm and rounding.
     ///
     /// Rotary joints are monotone. The range of a linear joint on an interval of duration Δ exceeds that of
     /// its ends by at most sup|q″| Δ²/8, as derived for the [deviation](JointMotion::deviation). Intervals
@@ -66,7 +69,7 @@ impl JointMotion {
             for (limit, sign) in [(low, -1.0), (high, 1.0)] {
                 // A rotary joint is monotone, so that it is farthest at an end.
                 let last = usize::from(sign * values[1] > sign * values[0]);
-                if sign * (values[last] - limit) > 0.0 {
+                if sign * (values[last] - limit) > ANGLE_TOLERANCE {
                     violations.push(LimitViolation {
                         letter,
                         fraction: last as f64,

@@ -336,6 +336,9 @@ impl Stock {
         if travel < 0.0 {
             return None;
         }
+        if self.has_thin_rim(tool, needed, lipschitz) {
+            return None;
+        }
         let count = (8.0 * travel / needed).ceil().clamp(1.0, 100_000.0);
         let centre = |index: usize| first + travel * (index as f64 / count);
         let mut points = PointBatch::default();
@@ -362,6 +365,42 @@ impl Stock {
             last = Some(centre);
         }
         last.map(|last| thickness.max(high - last + missed))
+    }
+
+    /// Returns whether a part of a tool stands out sideways by more than twice a radius, in which no ball of this radius fits, such as a
+    /// disc or a collar: layers of material can surround it that no ball about the axis meets. The tool is tried on a grid in the
+    /// half-plane, of a quarter of the radius where it has no more than 10,000 points.
+    fn has_thin_rim(&self, tool: &dyn Tool, radius: f64, lipschitz: f64) -> bool {
+        let info = tool.info();
+        let unit = info.unit.factor_to(self.unit);
+        let reach = info.reach();
+        let (low, width) = (reach.low * unit, info.radius() * unit);
+        let height = (reach.high - reach.low) * unit;
+        let cell = (0.25 * radius).max((width * height / 1e4).sqrt());
+        let [columns, rows] = [width, height].map(|size| (size / cell).ceil() as usize);
+        let mut places = Vec::new();
+        let mut points = PointBatch::default();
+        for (column, row) in (0..columns).flat_map(|column| (0..rows).map(move |row| (column, row)))
+        {
+            let place = [column, row].map(|index| (index as f64 + 0.5) * cell);
+            places.push(place);
+            points.push([place[0] / unit, 0.0, (low + place[1]) / unit]);
+        }
+        let outputs = Outputs { depth: true, ..Outputs::INSIDE };
+        let mut evaluations = Evaluations::default();
+        tool.evaluate(Level::new(), outputs, &points, unit, &mut evaluations);
+        let inside = evaluations.inside_indices();
+        let (wide, thin): (Vec<usize>, Vec<usize>) =
+            inside.partition(|index| evaluations.depth[*index] * unit / lipschitz >= radius);
+        let mut aside = thin.into_iter().map(|index| places[index]);
+        aside.any(|[r, z]| {
+            // A pointed end about the axis is judged by the balls there.
+            r > 2.0 * radius
+                && wide.iter().all(|index| {
+                    let [other, height] = places[*index];
+                    (other - r).hypot(height - z) > 3.0 * radius + cell
+                })
+        })
     }
 
     /// Returns the step: no point of a tool travels farther between two samples of a motion.

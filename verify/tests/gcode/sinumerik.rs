@@ -353,10 +353,16 @@ fn tool_vectors_under_traori_are_in_program_coordinates() {
     near(vectors[3], [-0.6, 0.0, 0.8]);
     assert_eq!(vectors[4], None);
     assert_eq!((all[1].end[3], all[1].commanded[3]), (None, true));
-    assert_eq!(
-        (all[1].state.tcp, all[1].state.orientation),
-        (Tcp::Transformation, Some(Choice::ByAxes))
-    );
+    assert_eq!((all[1].state.tcp, all[1].state.orientation), (Tcp::Transformation, None));
+    // What decides depends on the machine, so that both have to agree.
+    for (words, orientation) in [
+        ("ORIAXES", None),
+        ("ORIMKS ORIAXES", Some(Choice::ByAxes)),
+        ("ORIWKS ORIPLANE", Some(Choice::GreatCircle)),
+    ] {
+        let all = steps(&program.replace("ORIWKS ORIAXES", words).replace("A3=0 B3=3 C3=4", "B1"));
+        assert_eq!(all[1].state.orientation, orientation, "{words}");
+    }
 }
 
 #[test]

@@ -187,7 +187,7 @@ fn a_way_to_the_first_position_below_the_top_of_a_body_is_open() {
 /// The control chooses the angles of a vector, and they are the nearest, whatever it does with angles that the program states.
 #[test]
 fn a_tool_vector_turns_the_table_the_shorter_way() {
-    let text = "G17 G90 G54 G71 G94\nT1 M6\nD1\nS1000 M3\nG0 A-36.87 C335\nG0 X0 Y0 Z100\nTRAORI\nORIMKS ORIAXES\nG54\n\
+    let text = "G17 G90 G54 G71 G94\nT1 M6\nD1\nS1000 M3\nG0 A-36.87 C335\nG0 X0 Y0 Z100\nTRAORI\nORIWKS\nG54\n\
                 G0 X0 Y0 Z60 A3=0.253570957 B3=0.543784672 C3=0.8\nG1 X0.5 F1000\nG1 A3=-0.253570957 B3=0.543784672 C3=0.8\n\
                 G0 Z100\nTRAFOOF\nG54\nG0 Z100 A0 C0\nM30\n";
     let stated = native(Choice::KeepsOffset);

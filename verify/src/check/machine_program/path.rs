@@ -10,12 +10,9 @@ use crate::gcode::{StepPath, band_radii};
 use crate::machine::{Chain, JointError, JointMotion, Joints, Letter, LinearPath, Machine, Plane};
 use nalgebra::{Matrix3, Vector3};
 
-/// Distance between an arc and its chords that their angle is chosen for, in mm, where the arc's plane is not parallel to two
-/// axes. From a radius of 160 mm on, [`MIN_CHORD_ANGLE`] allows a larger one, which [`Segment::error`] states.
+/// Distance between an arc and its chords, in mm, where the arc's plane is not parallel to two axes. [`Segment::error`] adds that of a
+/// changing radius.
 const CHORD_TOLERANCE: f64 = 2e-5;
-
-/// Least angle of a chord that the tolerance may ask for, in radians.
-const MIN_CHORD_ANGLE: f64 = 1e-3;
 
 /// Largest angle of a chord, in radians. It holds for radii below 0.00064 mm.
 const MAX_CHORD_ANGLE: f64 = 0.5;
@@ -93,7 +90,7 @@ fn chords(
     let [start_radius, end_radius] =
         [start, end].map(|end| (end[first] - centre[0]).hypot(end[second] - centre[1]));
     let max_radius = start_radius.max(end_radius);
-    let angle = (8.0 * CHORD_TOLERANCE / max_radius).sqrt().clamp(MIN_CHORD_ANGLE, MAX_CHORD_ANGLE);
+    let angle = (8.0 * CHORD_TOLERANCE / max_radius).sqrt().min(MAX_CHORD_ANGLE);
     let count = (sweep.abs() / angle).ceil().max(1.0);
     if count > MAX_CHORDS {
         let [degrees, limit] = [sweep.abs(), MAX_CHORDS * angle].map(f64::to_degrees);
@@ -126,11 +123,12 @@ fn chords(
     Ok(chord.collect())
 }
 
-/// Half the distance between the curves that stand for a band, in mm: a quarter of the usual resolution of a check.
-const BAND_TOLERANCE: f64 = 2.5e-4;
+/// Half the distance between the curves that stand for a band, in mm: less than an eighth of the usual resolution of a check, which 8
+/// errors of a path have to keep.
+const BAND_TOLERANCE: f64 = 1.2e-4;
 
 /// Largest number of curves that stand for a band.
-const MAX_CURVES: f64 = 256.0;
+const MAX_CURVES: f64 = 512.0;
 
 /// Curves for the band of an arc whose radii differ: arcs between the least and the greatest radius, each with its ends in program
 /// coordinates, and the distance within which every point of the band has one, in mm. None for an arc without a band, or while rotary

@@ -70,6 +70,8 @@ pub struct MachineSummary {
     pub singular: Vec<(BlockLine, SingularPass)>,
     /// The lowest and the highest corner of the blank that the program states, in program coordinates and in millimetres.
     pub blank: Option<[[f64; 3]; 2]>,
+    /// The first line with a step under another work offset than G54.
+    pub(crate) other_offset: Option<usize>,
     /// The tools that comments of the program describe.
     pub stated_tools: Vec<StatedTool>,
     /// Notes of the interpreter.
@@ -575,6 +577,9 @@ impl MachineSummary {
     /// Notes that the work offset of a step has another origin than a setup states.
     pub(super) fn add_offset(&mut self, step: &Step, setup: &ControlSetup) {
         let (state, offset) = (&step.state, step.state.work_offset);
+        if !matches!(offset, WorkOffset::Standard(1) | WorkOffset::Off) {
+            self.other_offset.get_or_insert(step.line);
+        }
         let stated = match offset {
             WorkOffset::Standard(number @ 2..) => {
                 setup.work_offsets.get(usize::from(number) - 1).and_then(Option::as_ref)

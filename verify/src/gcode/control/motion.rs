@@ -372,9 +372,9 @@ impl Control {
             Some(0.0) if is_dropped => {
                 self.check_shifted(block)?;
                 self.check_after_rotation(block)?;
-                if self.stated(Rule::Dialect) != Some(Choice::Rs274Ngc) {
-                    let height = self.height_before;
-                    self.move_along_z(height);
+                let is_linuxcnc = self.stated(Rule::Dialect) == Some(Choice::Rs274Ngc);
+                if let Some(height) = self.height_before.filter(|_| !is_linuxcnc) {
+                    self.move_along_z(Some(height));
                 }
             }
             _ => self.check_position(block)?,

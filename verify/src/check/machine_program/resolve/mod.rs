@@ -424,7 +424,14 @@ impl<'a> Resolver<'a> {
         }
         let limits = self.machine.axis(Letter::Z).and_then(|axis| axis.limits);
         let mut end = joints;
-        end[2] += limits.map_or(TRAVEL, |[low, high]| high - low);
+        end[2] = match limits {
+            // It ends at the top, where the place of Z is known.
+            Some([_, high]) if self.is_placed && self.height == Height::OfAxis => {
+                high.max(joints[2])
+            }
+            Some([low, high]) => joints[2] + (high - low),
+            None => joints[2] + TRAVEL,
+        };
         let rise = path::line(&chain, [joints, end])?;
         Ok(Resolved::Departure(Box::new(rise), UnknownCause::Home))
     }
