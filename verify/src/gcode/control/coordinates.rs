@@ -25,7 +25,9 @@ impl Control {
         if new != *self.state {
             if new.length != self.state.length {
                 self.length_changed = true;
-                self.height_before = self.height_before.or(self.position[2]);
+                // Tool centre point control ends where the kinematics have it.
+                let is_plain = [&new, &self.state].iter().all(|state| state.tcp == Tcp::Off);
+                self.height_before = self.height_before.or(self.position[2]).filter(|_| is_plain);
             }
             // A plane that turns nothing leaves nothing open.
             let is_upright = [&new, &self.state].iter().all(|state| {
