@@ -286,11 +286,12 @@ impl<'g> Slopes<'g> {
             Node::Mul(a, b) if a == b => v(a).square(),
             Node::Mul(a, b) => v(a).times(v(b)),
             Node::Div(a, b) | Node::Quotient(a, b) => v(a).over(v(b)),
-            // Where one is the smaller throughout the box there is no kink.
-            Node::Min(a, b) if v(a).value.high <= v(b).value.low => v(a),
-            Node::Min(a, b) if v(b).value.high <= v(a).value.low => v(b),
-            Node::Max(a, b) if v(a).value.low >= v(b).value.high => v(a),
-            Node::Max(a, b) if v(b).value.low >= v(a).value.high => v(b),
+            // Where one is smaller throughout the box there is no kink. Where they are equal at its side there is one: the function
+            // need not fall beyond it as it does within.
+            Node::Min(a, b) if v(a).value.high < v(b).value.low => v(a),
+            Node::Min(a, b) if v(b).value.high < v(a).value.low => v(b),
+            Node::Max(a, b) if v(a).value.low > v(b).value.high => v(a),
+            Node::Max(a, b) if v(b).value.low > v(a).value.high => v(b),
             Node::Min(a, b) => {
                 let (a, b) = (v(a), v(b));
                 Slope { value: a.value.min(b.value), ..a.hull(b).kinked(KINK_UP) }
@@ -303,8 +304,8 @@ impl<'g> Slopes<'g> {
                 let a = v(a);
                 let other = a.scaled(ONE.negated());
                 match a.value {
-                    Interval { low, .. } if low >= 0.0 => a,
-                    Interval { high, .. } if high <= 0.0 => other,
+                    Interval { low, .. } if low > 0.0 => a,
+                    Interval { high, .. } if high < 0.0 => other,
                     value => Slope { value: value.abs(), ..a.hull(other).kinked(KINK_DOWN) },
                 }
             }
@@ -319,7 +320,7 @@ impl<'g> Slopes<'g> {
                 None => v(a).sqrt(),
             },
             Node::Select { low, high, then, other } => {
-                if v(low).value.high <= v(high).value.low {
+                if v(low).value.high < v(high).value.low {
                     v(then)
                 } else if v(low).value.low > v(high).value.high {
                     v(other)

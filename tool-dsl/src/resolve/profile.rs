@@ -1,10 +1,11 @@
 //! Resolves a `profile` to its outline: points, circles and surfaces, in the tool's frame.
 
 use super::lower::Lowering;
+use super::mount::off_tip;
 use crate::diagnostic::{
     Diagnostic, FormattedNumber, ProfileKind, Reported, Role, enough, format_number, without_error,
 };
-use crate::geometry::outline::{Circle, ExactPoint, Segment, doubles, minus, norm};
+use crate::geometry::outline::{Circle, ExactPoint, Segment, bounding_box, doubles, minus, norm};
 use crate::model::Surface;
 use crate::number::Number;
 use crate::regionalise::check::check;
@@ -30,6 +31,9 @@ const MAX_SEGMENTS: usize = 256;
 const MAX_RADIUS_IN_CHORDS: f64 = 1e6;
 /// The largest distance of an arc's ends from its circle, in radii.
 const MAX_CIRCLE_DEVIATION_IN_RADII: f64 = 1e-9;
+
+/// The largest distance of a tool from its tip at which its proofs are tried, in sizes of the tool.
+const MAX_TIP_IN_SIZES: f64 = 1e6;
 
 /// The outline of a tool's section, in the tool's frame and unit.
 pub(super) struct Outline {
@@ -101,6 +105,11 @@ pub(super) fn outline(
         .collect();
     if frame.spindle_down {
         segments.reverse();
+    }
+    // So far from its tip the digits of a tool are lost, and with them what was checked.
+    let [[_, end], [radius, high]] = bounding_box(&segments);
+    if end.abs() > MAX_TIP_IN_SIZES * radius.max(high - end) {
+        return Err(Reported::push(diagnostics, off_tip(&frame, [end, high])));
     }
     Ok(Outline { segments, surfaces, span: profile.span })
 }

@@ -689,3 +689,23 @@ fn programs_of_the_user_come_before_cycles() {
     let text = "DEF REAL AA=1\nG0 X5\nSUBY\nM30\n";
     assert_fault(text, &common::execute(text, &setup).expect_err("two"), 3, "P0143 SUBY");
 }
+
+/// A name of a program or a label that is a variable's stands for its text.
+#[test]
+fn names_that_are_computed_are_refused() {
+    for call in ["CALL SUBA", "CALL BLOCK SUBA TO FIN", "CALL BLOCK FIN TO SUBA", "GOTOF SUBA"] {
+        let program = format!("DEF STRING[8] SUBA=\"SUBB\"\n{call}\nFIN: M30\n");
+        let error = read(&program, &setup()).expect_err(call);
+        assert_fault(&program, &error, 2, "P0115 computed");
+    }
+}
+
+/// An increment of one axis is one as in G91.
+#[test]
+fn the_first_position_after_a_rotation_is_no_increment() {
+    for text in ["ROT Z90\nG0 X=IC(-60) Y=IC(0)", "ROT Z90\nG91\nG0 X-60 Y0"] {
+        let program = format!("G17 G90 G54 G71 G94\nG0 X0 Y0 Z9\n{text}\nM30\n");
+        let error = read(&program, &setup()).expect_err(text);
+        assert!(common::is_fault(&error, "P0120 after G68"), "{text}: {error}");
+    }
+}

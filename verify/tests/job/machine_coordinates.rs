@@ -386,3 +386,67 @@ fn a_height_that_a_tool_change_leaves_is_no_way_home() {
     scene("L X-60 Z+0 R0 FMAX M91").gives(HEIDENHAIN, NONE, &["V0403 14"]);
     scene("").gives(HEIDENHAIN, CLEAN, &[]);
 }
+
+/// SUPA takes positions, with the length along Z: neither the ways of single axes nor a head that is turned.
+#[test]
+fn machine_coordinates_have_no_ways_of_their_own() {
+    let on_table = |blocks: &str| scene("a.mpf", &sinumerik(blocks), TRUNNION, G54);
+    let start = "G0 A0 C0\nG0 X0 Y0\nG0 Z2";
+    for block in ["SUPA Z=IC(-100)", "SUPA C=DC(10)", "G53 X=AC(5)"] {
+        on_table(&format!("{start}\nG0 {block}")).gives(SIEMENS, NONE, &["P0120 8 G53"]);
+    }
+    let head = "G0 B0 C0\nG0 X0 Y0\nG0 Z100\nG0 B60\nG0 SUPA X-60";
+    let scene = scene("a.mpf", &sinumerik(head), crate::in_the_way::B_HEAD, G54);
+    scene.gives(SIEMENS, NONE, &["P0120 9 SUPA"]);
+}
+
+/// An axis tilts the tool by its direction, whatever its letter is.
+#[test]
+fn a_retract_is_along_a_head_that_any_letter_tilts() {
+    let swapped = crate::in_the_way::B_HEAD
+        .replace("letter = \"C\"", "letter = \"?\"")
+        .replace("letter = \"B\"", "letter = \"C\"")
+        .replace("letter = \"?\"", "letter = \"B\"");
+    for (machine, tilting, turning) in [(crate::in_the_way::B_HEAD, "B", "C"), (&swapped, "C", "B")]
+    {
+        for distance in ["60", "MAX"] {
+            let blocks = format!(
+                "L {tilting}+0 {turning}+0 R0 FMAX M3\nL X+0 Y+0 Z+100 FMAX\nL {tilting}+60 FMAX\nL M140 MB {distance} FMAX"
+            );
+            let scene = scene("a.h", &klartext(&blocks), machine, G54).with("anyway = true");
+            assert!(scene.check(HEIDENHAIN).has("V0404 6"), "{tilting} {distance}");
+        }
+    }
+}
+
+/// The limits of axes hold where a way begins at an unknown place, after sums of increments, and for a way home.
+#[test]
+fn limits_hold_at_known_ends_and_up_to_rounding() {
+    let limited = TRUNNION
+        .replace(
+            "carries = \"tool\", rapid = 10000 },\n        { letter = \"Z\"",
+            "carries = \"tool\", rapid = 10000, limits = [-350, 350] },\n        { letter = \"Z\"",
+        )
+        .replace("point = [0, 0, -480]", "point = [0, 0, -480], limits = [-120, 30]");
+    assert!(limited.contains("350") && limited.contains("-120"));
+    let on = |blocks: &str| scene("a.nc", &iso(blocks), &limited, G54).with("anyway = true");
+    on("G43 H1 G0 X400. Y0. Z100. A0. C0.\nT1 M6").gives(FANUC, FINDINGS, &["V0108 4 X goes to 400"]);
+    let sum = format!("G0 X0. Y0. A0. C0.\nG43 H1 Z100.\nG91\n{}G90", "G1 A0.6 F100.\n".repeat(50));
+    assert!(!on(&sum).check(FANUC).has("V0108"));
+    // Z rises to its upper limit, and not by the whole of its travel.
+    let roof = |height: f64| {
+        let machine = TRUNNION.replace(
+            "letter = \"Z\", kind = \"linear\"",
+            "letter = \"Z\", kind = \"linear\", limits = [-800, 0]",
+        );
+        let home = scene(
+            "a.nc",
+            &iso("G0 X0. Y0. A0. C0.\nG43 H1 Z100.\nG1 Z9. F100.\nG28 G91 Z0."),
+            &machine,
+            G54,
+        );
+        home.obstacle([-9.0, -9.0, height], [9.0, 9.0, height + 9.0]).check(FANUC).has("V0101")
+    };
+    // The tip ends at 440 - 80 above the part, and the tool at 400.
+    assert!(roof(370.0) && !roof(410.0));
+}

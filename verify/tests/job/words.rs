@@ -364,6 +364,11 @@ fn the_blank_of_klartext_is_the_stock() {
     ] {
         scene(&text, shape).gives(HEIDENHAIN, NONE, &[message]);
     }
+    // Its coordinates are those of the preset, of which the program may have several.
+    let other = text.replace("BLK FORM 0.1", "CYCL DEF 247 DATUM SETTING Q339=+2\nBLK FORM 0.1");
+    let mut other = scene(&other, "blank = true").with("presets = { 2 = \"G55\" }");
+    other.job = other.job.replace("[work_offsets]", "[work_offsets]\nG55 = [0, 0, -370]");
+    other.gives(HEIDENHAIN, NONE, &["J0136"]);
 }
 
 /// A return of Y leaves the length offset of Z, whose end moves Z then.
@@ -422,4 +427,50 @@ fn words_of_klartext_are_neither_missed_nor_dropped() {
         let error = steps(&blocks).expect_err(word);
         assert!(error.code() == "P0120" && error.to_string().contains(word), "{error}");
     }
+}
+
+/// Words of one block that take or scale what belongs to another: each is what the control does, or refused.
+#[test]
+fn words_of_one_block_do_not_hide_each_other() {
+    let start = "T1 M6\nS1000 M3\nG0 X0. Y0.\nG43 H1 Z50.\nG1 Z5.\nG0 Z50.\n";
+    let scene =
+        |blocks: &str| Scene::new(&format!("{start}{blocks}")).placed().with("anyway = true");
+    // The Z of G52, G92, G10 and a plane is no motion, beside which the change of the length would be one.
+    for word in
+        ["G52 X0. Y0. Z0.", "G92 Z130.", "G10 L2 P2 Z-440.", "G68.2 X0. Y0. Z0. I0. J0. K0."]
+    {
+        scene(&format!("G49 {word}")).gives(FANUC, NONE, &["P0120 8 the length offset changes"]);
+    }
+    // A length offset does not hide the rotation beside it from a mirror image.
+    for mode in ["G51.1 X0.", "G16"] {
+        let rotated = format!("{mode}\nG43 H1 G68 X0. Y0. R90.\nG1 X5.");
+        scene(&rotated).gives(FANUC, NONE, &["P0120 9 G68"]);
+    }
+    scene("G18\nG16\nG0 Z40.").gives(FANUC, NONE, &["P0120 10 G18"]);
+    // The way to an intermediate point is that of a position.
+    scene("G68 X0. Y0. R90.\nG0 X9. Y0.\nG69\nG28 X0.").gives(FANUC, NONE, &["P0120 11 G69"]);
+    let stays = rules("fanuc").with(Rule::LengthChange, Choice::WithNextZ);
+    scene("G49\nG91 G28 Z10.").gives_by(stays, NONE, &["P0120 9 Z"]);
+    // What an ignored word may own, and a word in force.
+    let ignored = scene("G0 Z35. H2 M130").with("ignore = { M130 = \"a lamp\" }");
+    ignored.gives(FANUC, NONE, &["P0120 8 H"]);
+    for word in ["M3", "M05", "M19", "M29", "G67"] {
+        let text = format!("ignore = {{ {word} = \"a lamp\" }}");
+        assert!(scene("").with(&text).check(FANUC).has("K0504"), "{word}");
+    }
+}
+
+/// A whole number is scaled as the word does that takes it.
+#[test]
+fn a_whole_number_is_an_increment_of_its_own_word() {
+    let read = |text: &str| {
+        let setup = ControlSetup { rules: rules("fanuc"), ..ControlSetup::default() };
+        let program = format!("G20 G90 G17 G94 G54 G98\nT1 M6\nG0 X0. Y0. Z5.\n{text}\nM30\n");
+        read(&program, &setup).expect("a program").0
+    };
+    // 0.97 inch in Y, though the block before was polar; a plane R of 0.2 inch beside G69.
+    let end = read("G16\nG15 G0 X0 Y9700").last().expect("a step").end;
+    assert!((end[1].expect("y") - 24.638).abs() < 1e-9, "{end:?}");
+    let drilled = read("G69\nG69 G99 G81 X0. Y0. Z-.05 R2000 F5.");
+    assert!(drilled.iter().any(|step| (step.end[2].unwrap_or(0.0) - 5.08).abs() < 1e-9));
 }

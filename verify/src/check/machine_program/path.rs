@@ -208,3 +208,26 @@ pub(super) fn line(chain: &Chain, ends: [Joints; 2]) -> Result<JointMotion, Join
     let [(start, from), (end, to)] = ends.map(|[x, y, z, a, b, c]| ([x, y, z], [a, b, c]));
     JointMotion::new(chain, [from, to], &LinearPath::Line { start, end })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The error of chords does not grow with the radius, as what is as deep as some of it need not be found.
+    #[test]
+    fn chords_of_long_arcs_are_as_near_as_those_of_short_ones() {
+        let turn = nalgebra::Rotation3::from_axis_angle(&Vector3::x_axis(), 0.5);
+        let map_ = Map { rotation: *turn.matrix(), origin: Vector3::zeros() };
+        for radius in [10.0, 1e3, 6e5] {
+            let sweep = 300.0 / radius;
+            let path = StepPath::Arc { plane: Plane::Xy, centre: [0.0, radius], sweep };
+            let end = [radius * sweep.sin(), radius * (1.0 - sweep.cos()), 0.0];
+            let segments = map(&path, [[0.0; 3], end], &map_).unwrap_or_default();
+            assert!(segments.len() > 1, "{radius}");
+            assert!(
+                segments.iter().all(|segment| segment.error <= 1.001 * CHORD_TOLERANCE),
+                "{radius}"
+            );
+        }
+    }
+}

@@ -150,7 +150,8 @@ fn what_could_be_a_motion_is_refused() {
     let words = "GOTOX/1,2,3|GOOT/1,2,3|GO TO/1,2,3|GOABS/1,2,3|LINEAR/1,2,3|MOVE/1,2,3|MOVETO/1,2,3|\
                  ARC/1,2,3|CIRC/1,2,3|ARCDAT/1,2,3|DRILL/1,2,3|GODLT/1,2,3|ORIGIN/0,0,35|CUTCOM/3DCOMP|\
                  MODE/INCR|THICK/-5|HEAD/2|LOADTL/2|CUTTER/50|INSERT G0 Z-5|LETTER/G1 Z-5|INSERT/X5 Y-2.|INSERT/TRANS X10|INSERT/R1=5|INSERT/L X+5|\
-                 INSERT/CYCLE800(1)|INSERT/#1=2|INSERT/CALL LBL 5|RAPID/ON|OPSKIP/ON|\
+                 INSERT/CYCLE800(1)|INSERT/X0Y0Z-5.|INSERT/Z-5. (DOWN)|INSERT/G 0 Z -5.|INSERT/Z-5.F100.|INSERT/Z-5.*|INSERT/(A) ; Z-5.|INSERT/GOTOF ENDE|\
+                 INSERT/MYSUB(1,2)|INSERT/MYSUB|INSERT/RND R5|INSERT/#1=2|INSERT/CALL LBL 5|RAPID/ON|OPSKIP/ON|\
                  TRACUT/M1|C1 = CIRCLE/0,0,1|M1 = MACRO/|AUXFUN/98|PREFUN/91|X|GOTO|TLDATA/MILL,50.,0.";
     for word in words.split('|') {
         let text =
@@ -412,6 +413,8 @@ fn arcs_of_several_systems_are_read() {
         (movarc("0, 0, 0, 0, 0, -1., 10., ANGLE, 90."), turn / 4.0, [-10.0, 0.0]),
         (movarc("0, 0, 0, 0, 0, 1., 10., ANGLE, 90."), turn / 4.0, [-10.0, 0.0]),
         (movarc("0, 0, 0, 0, 0, 1., 10., ANGLE, 270."), 0.75 * turn, [-10.0, 10.0]),
+        // A stub of a turn is none.
+        ("GOTO/40,0,0\nCIRCLE/-1000,0,0,0,0,1,1040\nGOTO/40,0.001,0\nFINI".to_owned(), 0.001, [0.0, 0.001]),
         (movarc(" CENTER, 0, 0, 0, AXIS, 0, 0, 1, RADIUS, 10"), 0.75 * turn, [-10.0, 10.0]),
     ] {
         let stops = program(&text).locations;
@@ -424,6 +427,14 @@ fn arcs_of_several_systems_are_read() {
     for text in [
         movarc("0, 0, 0, 0, 0, 1., 10., ANGLE, 45."),
         movarc("0, 0, 0, 0, 0, 1., 10."),
+        // Radii that differ, of which each control makes another way, a way that could be a whole turn, and half a turn in a file that
+        // states one normal for both directions.
+        "UNITS/MM\nGOTO/200,0,0\nCIRCLE/0,0,0,0,0,1,200\nGOTO/-200.002,0,0\nFINI".to_owned(),
+        "UNITS/MM\nGOTO/200,0,0\nCIRCLE/0,0,0,0,0,1,200\nGOTO/199.9995,-0.01,0\nFINI".to_owned(),
+        "UNITS/MM\nGOTO/40,0,0\nCIRCLE/-1000,0,0,0,0,1,1040\nGOTO/40,0.0001,0\nFINI".to_owned(),
+        movarc(
+            "0, 0, 0, 0, 0, 1., 10., ANGLE, 90.\nGOTO/0,-10,0\nMOVARC/-30, -10, 0, 0, 0, 1., 30., ANGLE, 180.\nGOTO/-60,-10,0",
+        ),
         catia("ON,2,INTOF,(LINE/ 0.0, 0.0, 0.0, 10.0, 0.0, 0.0)"),
         catia("ON,(LINE/ 0.0, 0.0, 0.0, -10.0, 0.0, 0.0)"),
         catia("PAST,(LINE/ 0.0, 0.0, 0.0, 10.0, 0.0, 0.0)"),
