@@ -328,11 +328,8 @@ fn profiles_of_many_segments_are_proved() {
 /// A depth that falls toward a plane in the middle is 0 or small there, far from the surface. The sides of boxes lie in that plane.
 #[test]
 fn valleys_between_boxes_are_found() {
-    for (valley, exact) in [
-        ("abs(x)", false),
-        ("0.5 + max(x, 0 - x)", false),
-        ("9 - abs(x)", true),
-    ] {
+    for (valley, exact) in [("abs(x)", false), ("0.5 + max(x, 0 - x)", false), ("9 - abs(x)", true)]
+    {
         let text = format!(
             "solid T \"a block\" {{ units mm; region all where abs(x) <= 5, abs(y) <= 4, -5 <= z <= 5 {{
                depth: min(5 - abs(x), 4 - abs(y), 5 - abs(z), {valley}); }} }}"

@@ -430,7 +430,11 @@ fn limits_hold_at_known_ends_and_up_to_rounding() {
         .replace("point = [0, 0, -480]", "point = [0, 0, -480], limits = [-120, 30]");
     assert!(limited.contains("350") && limited.contains("-120"));
     let on = |blocks: &str| scene("a.nc", &iso(blocks), &limited, G54).with("anyway = true");
-    on("G43 H1 G0 X400. Y0. Z100. A0. C0.\nT1 M6").gives(FANUC, FINDINGS, &["V0108 4 X goes to 400"]);
+    on("G43 H1 G0 X400. Y0. Z100. A0. C0.\nT1 M6").gives(
+        FANUC,
+        FINDINGS,
+        &["V0108 4 X goes to 400"],
+    );
     let sum = format!("G0 X0. Y0. A0. C0.\nG43 H1 Z100.\nG91\n{}G90", "G1 A0.6 F100.\n".repeat(50));
     assert!(!on(&sum).check(FANUC).has("V0108"));
     // Z rises to its upper limit, and not by the whole of its travel.
