@@ -199,6 +199,40 @@ impl ProfileSegment {
             surface: SurfaceId(surface),
         }
     }
+
+    /// Returns its length.
+    pub fn length(&self) -> f64 {
+        match self.circle {
+            Some(circle) => circle.radius * self.sweep(&circle).abs(),
+            None => (self.to[0] - self.from[0]).hypot(self.to[1] - self.from[1]),
+        }
+    }
+
+    /// Returns the point at a fraction of its length, from 0 to 1, and the unit vector along it there, to within rounding.
+    pub fn place(&self, fraction: f64) -> ([f64; 2], [f64; 2]) {
+        let Some(circle) = self.circle else {
+            let [r, z] = [0, 1].map(|k| self.to[k] - self.from[k]);
+            let length = r.hypot(z);
+            let point = [0, 1].map(|k| self.from[k] + fraction * (self.to[k] - self.from[k]));
+            return (point, [r / length, z / length]);
+        };
+        let [r, z] = [0, 1].map(|k| self.from[k] - circle.centre[k]);
+        let sweep = self.sweep(&circle);
+        let (sine, cosine) = (z.atan2(r) + fraction * sweep).sin_cos();
+        let point =
+            [circle.centre[0] + circle.radius * cosine, circle.centre[1] + circle.radius * sine];
+        (point, [-sine * sweep.signum(), cosine * sweep.signum()])
+    }
+
+    /// Returns the angle of an arc, above 0 if it runs counter-clockwise.
+    fn sweep(&self, circle: &Circle) -> f64 {
+        let [from, to] = [self.from, self.to]
+            .map(|end| (end[1] - circle.centre[1]).atan2(end[0] - circle.centre[0]));
+        match circle.convex {
+            true => (to - from).rem_euclid(std::f64::consts::TAU),
+            false => -(from - to).rem_euclid(std::f64::consts::TAU),
+        }
+    }
 }
 
 /// An interval of the axis, with the largest radius of the solid there.

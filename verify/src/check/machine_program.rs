@@ -504,6 +504,9 @@ impl MachineProgram {
             if !step.rapid && !is_empty {
                 summary.add_feed(&step, self.off_is_tip);
             }
+            if step.state.length == LengthOffset::Off && !self.off_is_tip && !is_empty {
+                summary.bare_blocks.insert(step.block());
+            }
             let arrives = matches!(resolved, Resolved::Arrival(..));
             // What is known of a way, and the other curves of an arc, keep the limits, too.
             let further: Vec<&JointMotion> = match &resolved {
@@ -511,7 +514,12 @@ impl MachineProgram {
                 Resolved::Band(band) => band.curves.iter().map(|(curve, _)| curve).collect(),
                 _ => Vec::new(),
             };
-            for violation in further.into_iter().flat_map(JointMotion::check_limits) {
+            let known = match &resolved {
+                Resolved::Unknown(_) if is_placed => execution.resolver.known_violations(&step),
+                _ => Vec::new(),
+            };
+            let further = further.into_iter().flat_map(JointMotion::check_limits);
+            for violation in further.chain(known) {
                 summary.add_violation(step.block(), violation);
             }
             let motions = match resolved {

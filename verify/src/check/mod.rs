@@ -283,9 +283,11 @@ impl<'a> Verifier<'a> {
     fn unchecked_surfaces(&self, modes: [bool; 2], max_depths: &[f64]) -> Vec<SurfaceId> {
         let modes = || [false, true].into_iter().filter(|mode| modes[usize::from(*mode)]);
         let is_unchecked = |index: &usize| {
-            self.allowed[*index].is_none()
-                && modes()
-                    .any(|rapid| self.limits(rapid)[*index] + self.resolution >= max_depths[*index])
+            // An allowance is for cutting.
+            modes().any(|rapid| {
+                (rapid || self.allowed[*index].is_none())
+                    && self.limits(rapid)[*index] + self.resolution >= max_depths[*index]
+            })
         };
         (0..self.allowed.len()).filter(is_unchecked).map(SurfaceId).collect()
     }

@@ -12,6 +12,7 @@ use crate::gcode::{BlockLine, WorkOffset};
 use crate::machine::{Axis, Link, Machine, Side};
 use crate::{BlindWay, FindingGroup, Level, MachineProgram, MachineSummary, Move, Verifier};
 use nalgebra::{Point3, Vector3};
+use std::collections::HashSet;
 use std::sync::Arc;
 use touchoff::tool::Symmetry;
 
@@ -179,9 +180,15 @@ impl<'a> Job<'a> {
     ) -> Option<&str> {
         let unit = self.unit();
         let part = way.levels.last()?;
-        let bodies = self.bodies.iter().filter(|body| body.meets_tools()).filter_map(|body| {
+        let carried = |index| self.revolved.iter().any(|moving| moving.against.contains(&index));
+        let bodies = self.bodies.iter().enumerate();
+        let bodies = bodies.filter(|(index, body)| body.meets_tools() || carried(*index));
+        // An allowance below 0 is a distance to keep.
+        let allowances = self.tools.iter().flat_map(|tool| &tool.allow).chain(&self.allow);
+        let part_margin = allowances.map(|(_, depth)| -depth).fold(0.0, f64::max);
+        let bodies = bodies.filter_map(|(_, body)| {
             let margin = match body.role {
-                BodyRole::Part => 0.0,
+                BodyRole::Part => part_margin,
                 BodyRole::Fixture { margin } | BodyRole::Machine { margin, .. } => margin,
             };
             Some((&*body.name, self.height_above(body, way)? + margin))
@@ -405,6 +412,11 @@ impl<'a> Job<'a> {
         if machine.is_some_and(is_carried) {
             return Remedy { lift: None, tilt: None };
         }
+        let reading = self.program.readings().get(reading);
+        let is_of = |blocks: fn(&MachineSummary) -> &HashSet<BlockLine>| {
+            let block = group.worst.block();
+            reading.is_some_and(|reading| blocks(reading.summary()).contains(&block))
+        };
         match moving {
             Moving::Tool(_) => Remedy {
                 lift: verifier.lift(&group.worst),
@@ -413,11 +425,10 @@ impl<'a> Job<'a> {
             Moving::Revolved(index) => {
                 let revolved = &self.revolved[index];
                 // In an empty spindle no tool could be longer.
-                let reading = self.program.readings().get(reading);
-                let is_empty = reading.is_some_and(|reading| {
-                    reading.summary().empty_blocks.contains(&group.worst.block())
-                });
+                let is_empty = is_of(|summary| &summary.empty_blocks);
+                // Without a length offset a longer tool lifts nothing.
                 let is_lifted = !is_empty
+                    && !is_of(|summary| &summary.bare_blocks)
                     && machine.is_some_and(|machine| revolved.is_lifted_by_length(machine));
                 let lift = if is_lifted { verifier.lift(&group.worst) } else { None };
                 Remedy { lift, tilt: None }

@@ -134,7 +134,9 @@ impl StockCut {
         let CutStock { findings, stock, tolerance, .. } = &mut self.cut;
         let info = tool.tool.info();
         let max_speed = step.path.max_speed(info, self.unit);
-        let mode = if step.rapid { MotionMode::Rapid } else { MotionMode::Feed };
+        // Nothing led to the first position, so it cuts nothing there.
+        let is_rapid = step.rapid || step.from.is_none();
+        let mode = if is_rapid { MotionMode::Rapid } else { MotionMode::Feed };
         let contacts =
             stock.advance(tool.tool, &|time| step.path.pose(time), max_speed, mode, *tolerance)?;
         // A surface that touches nothing on this motion begins another finding when it touches again.

@@ -33,6 +33,20 @@ pub struct LimitViolation {
 }
 
 impl LimitViolation {
+    /// Returns the violation of a joint that stands at a value.
+    pub(crate) fn of_joint(letter: Letter, value: f64, [low, high]: [f64; 2]) -> Option<Self> {
+        let tolerance = if letter.is_rotary() { ANGLE_TOLERANCE } else { TOLERANCE };
+        let limit = if value > high { high } else { low };
+        let is_beyond = value > high + tolerance || value < low - tolerance;
+        is_beyond.then_some(LimitViolation {
+            letter,
+            fraction: 1.0,
+            value,
+            limit,
+            is_reached: true,
+        })
+    }
+
     /// Returns how far the value is beyond the limit, in mm or degrees.
     pub(crate) fn excess(&self) -> f64 {
         (self.value - self.limit).abs()

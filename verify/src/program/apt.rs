@@ -70,6 +70,10 @@ pub(super) fn read(text: &str) -> Result<Tapes, Faults> {
     if reader.arc.is_some() {
         refuse((end, ProgramFault::Arc { what: "ends at no position" }));
     }
+    if let Some(line) = reader.either_way.filter(|_| reader.turns_about_normals != Some(true)) {
+        let what = "of half a turn fits both directions, and no other arc tells that the file's normals state them";
+        refuse((line, ProgramFault::Arc { what }));
+    }
     // A file without positions is refused as such, whether it ends or not.
     // In a file of NX it is the beginning of `END-OF-PATH`.
     let is_at_end = reader.is_at_end && !reader.is_nx;
@@ -168,10 +172,11 @@ struct Reader {
     is_creo: bool,
     /// The arc that the last statement ended.
     ended_arc: Option<Arc>,
-    /// Set by an arc that turns against its normal, as older post processors state one for both directions.
-    is_one_sided: bool,
-    /// Set by an arc whose angle is that of both directions.
-    turns_either_way: bool,
+    /// Whether the arcs turn about their normals, as far as their angles tell: older post processors state one normal for both
+    /// directions.
+    turns_about_normals: Option<bool>,
+    /// The line of the first arc whose angle is that of both directions.
+    either_way: Option<usize>,
     /// Number of chords of all arcs.
     chords: usize,
     /// The direction in which CATIA's next arc begins.
@@ -337,12 +342,12 @@ impl Reader {
                     (Some(stated), None) => {
                         let (poses, arc) =
                             stated.stops(before.as_ref(), &pose, unit, self.chords)?;
-                        self.is_one_sided |= arc.is_reversed(&stated);
-                        self.turns_either_way |=
-                            before.is_some_and(|before| stated.fits_both_ways(&before, &pose));
-                        if self.is_one_sided && self.turns_either_way {
-                            let what = "of half a turn, or another one, turns against its normal, which the file states for both directions";
-                            return Err(ProgramFault::Arc { what });
+                        let is_of_both = |before| stated.fits_both_ways(&before, &pose);
+                        if before.is_some_and(is_of_both) {
+                            self.either_way.get_or_insert(line);
+                        } else if arc.states_angle() {
+                            let about = self.turns_about_normals.unwrap_or(true);
+                            self.turns_about_normals = Some(about && !arc.is_reversed(&stated));
                         }
                         self.chords += poses.len();
                         self.ended_arc = Some(arc);
@@ -689,25 +694,34 @@ const CONTROL_WORDS: [&str; 41] = [
     "REPEAT", "GOTOF", "GOTOB", "GOTOC", "GOTOS", "RND", "CHR", "CHF", "APPR", "DEP", "CASE",
 ];
 
+/// Words of blocks beside letters with numbers, of which no block is by itself.
+const BLOCK_WORDS: [&str; 14] =
+    ["FMAX", "FAUTO", "FU", "FZ", "RL", "RR", "DR", "MAX", "AC", "IC", "DC", "ANG", "RP", "AP"];
+
 /// Returns whether a text, in capitals, could be a block for a control: if it has a code, a word of a control, a variable or a call, or
-/// nothing but letters with numbers. A comment in parentheses and prose are none.
+/// letters with numbers and no word that a block cannot have. A comment in parentheses and prose are none.
 fn could_move(text: &str) -> bool {
-    // A parenthesis after a blank is a comment, and one after a name has the arguments of a call.
-    let mut rest = String::new();
+    // What follows a name in parentheses is a comment, or the arguments of a call.
+    let mut plain = String::new();
     let mut depth = 0;
     for character in text.chars() {
         match character {
-            '(' if depth > 0 || !rest.ends_with(|c: char| c.is_ascii_alphanumeric()) => depth += 1,
+            '(' => depth += 1,
             ')' if depth > 0 => depth -= 1,
-            _ if depth == 0 => rest.push(character),
+            '"' | '\'' => plain.push(' '),
+            _ if depth == 0 => plain.push(character),
             _ => {}
         }
     }
-    rest.split(';').any(|block| is_block(block.trim()))
+    let mut blocks = plain.split([';', '$']).chain([text]);
+    blocks.any(|block| is_block(block.trim()))
 }
 
-/// Returns whether a text without comments could be a block.
+/// Returns whether a text could be a block.
 fn is_block(text: &str) -> bool {
+    if text.starts_with('(') && text.find(')') == Some(text.len() - 1) {
+        return false;
+    }
     let has_code = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '.').any(|word| {
         let number = word.strip_prefix("CYCLE");
         let number = number.or_else(|| word.strip_prefix(['G', 'M', 'O', 'T', 'N', 'L', 'P']));
@@ -727,23 +741,17 @@ fn is_block(text: &str) -> bool {
             && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
     };
     let is_call = is_name(text.split_once('(').map_or(text, |(name, _)| name.trim_end()));
-    has_code || assigns || is_call || text.contains(['#', '%']) || has_words_alone(text)
+    has_code || assigns || is_call || text.contains(['#', '%']) || has_words_of_blocks(text)
 }
 
-/// Returns whether a text is nothing but letters with numbers, which blanks need not part.
-fn has_words_alone(text: &str) -> bool {
-    let compact: String = text.chars().filter(|c| !c.is_whitespace() && *c != '*').collect();
-    let mut rest = compact.trim_start_matches('/');
-    let mut count = 0;
-    while let Some(after) = rest.strip_prefix(|c: char| c.is_ascii_alphabetic()) {
-        let end = after.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(after.len());
-        let (number, next) = after.split_at(end);
-        if number.parse::<f64>().is_err() {
-            return false;
-        }
-        (rest, count) = (next, count + 1);
-    }
-    rest.is_empty() && count > 0
+/// Returns whether a text has a letter with a number, and no word that a block cannot have: a control refuses it whole.
+fn has_words_of_blocks(text: &str) -> bool {
+    let mut letters = text.split(|c: char| !c.is_ascii_alphabetic()).filter(|run| !run.is_empty());
+    let is_of_block =
+        |run: &str| run.len() == 1 || BLOCK_WORDS.contains(&run) || CONTROL_WORDS.contains(&run);
+    letters.clone().any(|run| run.len() == 1)
+        && text.contains(|c: char| c.is_ascii_digit())
+        && letters.all(is_of_block)
 }
 
 /// Returns whether a word is a letter with a number.

@@ -66,7 +66,7 @@ use lattice::{BitSet, Lattice, QuarterTurn, nodes_inside};
 use nalgebra::{Point3, Vector3};
 use std::fmt;
 use touchoff::mesh::{LARGEST_COORDINATE, Mesh};
-use touchoff::tool::{DepthBounds, Evaluations, Outputs, PointBatch, Tool};
+use touchoff::tool::{DepthBounds, Evaluations, Outputs, PointBatch, ProfileSegment, Tool};
 use touchoff::{Cloud, InsidePoint, InsideQuery, Interval, Level, PointBvh, TriangleId, Unit};
 
 /// The greatest number of points of a stock. A point takes some 34 bytes, and 110 while the stock is built: at
@@ -184,6 +184,9 @@ impl fmt::Debug for Stock {
             .finish_non_exhaustive()
     }
 }
+
+/// Largest number of places along a profile at which its thickness is tried.
+const MAX_PLACES: f64 = 20_000.0;
 
 impl Stock {
     /// Creates a stock from the inside of a mesh. A point of the lattice on the mesh counts as the point just
@@ -336,7 +339,7 @@ impl Stock {
         if travel < 0.0 {
             return None;
         }
-        if self.has_thin_rim(tool, needed, lipschitz) {
+        if self.has_thin_rim(tool, needed) {
             return None;
         }
         let count = (8.0 * travel / needed).ceil().clamp(1.0, 100_000.0);
@@ -367,39 +370,40 @@ impl Stock {
         last.map(|last| thickness.max(high - last + missed))
     }
 
-    /// Returns whether a part of a tool stands out sideways by more than twice a radius, in which no ball of this radius fits, such as a
-    /// disc or a collar: layers of material can surround it that no ball about the axis meets. The tool is tried on a grid in the
-    /// half-plane, of a quarter of the radius where it has no more than 10,000 points.
-    fn has_thin_rim(&self, tool: &dyn Tool, radius: f64, lipschitz: f64) -> bool {
+    /// Returns whether a part of a tool with a profile stands out sideways, in which no ball of a radius fits, such as a disc or a collar:
+    /// layers of material can surround it that no ball about the axis meets.
+    ///
+    /// Places along the profile are tried, a quarter of the radius apart, or farther on one of more than [`MAX_PLACES`]: whether the ball
+    /// that touches it there from within is inside. An edge of 45° or more keeps balls away for less than 5 radii along both sides. A
+    /// pointed end about the axis is left to the balls there.
+    fn has_thin_rim(&self, tool: &dyn Tool, radius: f64) -> bool {
         let info = tool.info();
         let unit = info.unit.factor_to(self.unit);
-        let reach = info.reach();
-        let (low, width) = (reach.low * unit, info.radius() * unit);
-        let height = (reach.high - reach.low) * unit;
-        let cell = (0.25 * radius).max((width * height / 1e4).sqrt());
-        let [columns, rows] = [width, height].map(|size| (size / cell).ceil() as usize);
+        let radius = radius / unit;
+        let length: f64 = info.outline.iter().map(ProfileSegment::length).sum();
+        let step = (0.25 * radius).max(length / MAX_PLACES);
         let mut places = Vec::new();
         let mut points = PointBatch::default();
-        for (column, row) in (0..columns).flat_map(|column| (0..rows).map(move |row| (column, row)))
-        {
-            let place = [column, row].map(|index| (index as f64 + 0.5) * cell);
-            places.push(place);
-            points.push([place[0] / unit, 0.0, (low + place[1]) / unit]);
+        for segment in info.outline.iter() {
+            let count = (segment.length() / step).ceil().max(1.0);
+            for index in 0..count as usize {
+                let (place, [dr, dz]) = segment.place((index as f64 + 0.5) / count);
+                places.push((place[0], segment.length() / count));
+                // Counter-clockwise, the material is to the left.
+                points.push([place[0] - dz * radius, 0.0, place[1] + dr * radius]);
+            }
         }
         let outputs = Outputs { depth: true, ..Outputs::INSIDE };
         let mut evaluations = Evaluations::default();
-        tool.evaluate(Level::new(), outputs, &points, unit, &mut evaluations);
-        let inside = evaluations.inside_indices();
-        let (wide, thin): (Vec<usize>, Vec<usize>) =
-            inside.partition(|index| evaluations.depth[*index] * unit / lipschitz >= radius);
-        let mut aside = thin.into_iter().map(|index| places[index]);
-        aside.any(|[r, z]| {
-            // A pointed end about the axis is judged by the balls there.
-            r > 2.0 * radius
-                && wide.iter().all(|index| {
-                    let [other, height] = places[*index];
-                    (other - r).hypot(height - z) > 3.0 * radius + cell
-                })
+        tool.evaluate(Level::new(), outputs, &points, 1.0, &mut evaluations);
+        let mut fits = vec![false; places.len()];
+        for index in evaluations.inside_indices() {
+            fits[index] = evaluations.depth[index] >= (1.0 - 1e-6) * radius;
+        }
+        let mut run = 0.0;
+        places.iter().zip(fits).any(|((from_axis, length), fits)| {
+            run = if fits || *from_axis <= 2.0 * radius { 0.0 } else { run + length };
+            run > 5.0 * radius
         })
     }
 

@@ -47,6 +47,8 @@ pub struct MachineSummary {
     pub empty_motions: usize,
     /// The blocks of all its motions.
     pub(crate) empty_blocks: HashSet<BlockLine>,
+    /// The blocks without a length offset in a program that has them, in which Z is that of the gauge point.
+    pub(crate) bare_blocks: HashSet<BlockLine>,
     /// The block of the first motion under tool centre point control, or in an aligned plane, without a tool length offset, and with
     /// a tool whose length is not stated.
     pub tcp_without_length: Option<BlockLine>,

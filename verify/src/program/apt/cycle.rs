@@ -126,6 +126,13 @@ impl Cycle {
         let mut stops = Vec::new();
         let mut add = |pose, rapid| stops.push(Stop { pose, rapid });
         if let Some(before) = before.filter(|_| level < self.rapid_to) {
+            // Some controls move over the hole first, and some rise first.
+            let aside = before.tip() - point.tip() - level * axis;
+            if aside.norm() > LEAST_STEP {
+                let word = "a hole above the level before it, to which controls go in two ways,"
+                    .to_owned();
+                return Err(ProgramFault::Cycle { word });
+            }
             let raised = before.tip() + (self.rapid_to - level) * axis;
             add(Pose::from_axis(raised, axis)?, true);
         }
@@ -242,6 +249,11 @@ impl Arc {
         let [from, to] = [from, to].map(|pose| self.arm(pose).0);
         let turn = from.cross(&to).dot(&self.normal).atan2(from.dot(&to));
         if from == to { TAU } else { turn.rem_euclid(TAU) }
+    }
+
+    /// Returns whether the angle of the turn is stated.
+    pub(super) fn states_angle(&self) -> bool {
+        self.angle.is_some()
     }
 
     /// Returns whether the arc was turned about the other normal than `stated` has, which states the angle.

@@ -150,7 +150,7 @@ fn what_could_be_a_motion_is_refused() {
     let words = "GOTOX/1,2,3|GOOT/1,2,3|GO TO/1,2,3|GOABS/1,2,3|LINEAR/1,2,3|MOVE/1,2,3|MOVETO/1,2,3|\
                  ARC/1,2,3|CIRC/1,2,3|ARCDAT/1,2,3|DRILL/1,2,3|GODLT/1,2,3|ORIGIN/0,0,35|CUTCOM/3DCOMP|\
                  MODE/INCR|THICK/-5|HEAD/2|LOADTL/2|CUTTER/50|INSERT G0 Z-5|LETTER/G1 Z-5|INSERT/X5 Y-2.|INSERT/TRANS X10|INSERT/R1=5|INSERT/L X+5|\
-                 INSERT/CYCLE800(1)|INSERT/X0Y0Z-5.|INSERT/Z-5. (DOWN)|INSERT/G 0 Z -5.|INSERT/Z-5.F100.|INSERT/Z-5.*|INSERT/(A) ; Z-5.|INSERT/GOTOF ENDE|\
+                 INSERT/CYCLE800(1)|INSERT/X0Y0Z-5.|INSERT/Z-5(PARK)|INSERT/Z[-5.]|INSERT/Z-5. FMAX|INSERT/X+0 Z-5. R0 FMAX|INSERT/Z-5.,F100|INSERT/'Z-5.'|INSERT/Z-5. (DOWN)|INSERT/G 0 Z -5.|INSERT/Z-5.F100.|INSERT/Z-5.*|INSERT/(A) ; Z-5.|INSERT/GOTOF ENDE|\
                  INSERT/MYSUB(1,2)|INSERT/MYSUB|INSERT/RND R5|INSERT/#1=2|INSERT/CALL LBL 5|RAPID/ON|OPSKIP/ON|\
                  TRACUT/M1|C1 = CIRCLE/0,0,1|M1 = MACRO/|AUXFUN/98|PREFUN/91|X|GOTO|TLDATA/MILL,50.,0.";
     for word in words.split('|') {
@@ -435,6 +435,8 @@ fn arcs_of_several_systems_are_read() {
         movarc(
             "0, 0, 0, 0, 0, 1., 10., ANGLE, 90.\nGOTO/0,-10,0\nMOVARC/-30, -10, 0, 0, 0, 1., 30., ANGLE, 180.\nGOTO/-60,-10,0",
         ),
+        "UNITS/MM\nGOTO/10,0,0\nMOVARC/0, 0, 0, 0, 0, 1., 10., ANGLE, 180.\nGOTO/-10,0,0\nFINI"
+            .to_owned(),
         catia("ON,2,INTOF,(LINE/ 0.0, 0.0, 0.0, 10.0, 0.0, 0.0)"),
         catia("ON,(LINE/ 0.0, 0.0, 0.0, -10.0, 0.0, 0.0)"),
         catia("PAST,(LINE/ 0.0, 0.0, 0.0, 10.0, 0.0, 0.0)"),
@@ -521,12 +523,12 @@ fn cycles_drill_at_each_position() {
     }
     let back = [&down[..], &[(3.0, false), (30.0, true)]].concat();
     assert_eq!(heights("CYCLE/TAP,FEDTO,5,RAPTO,3,RTRCTO,AUTO"), back);
-    // A hole that is higher than the one before is reached from above it.
-    let text = "UNITS/MM\nGOTO/0,0,3\nCYCLE/DRILL,FEDTO,5,RAPTO,3\nGOTO/5,0,20\nCYCLE/OFF\nGOTO/9,0,40\nFINI\n";
-    let stops = program(text).locations;
-    let ends: Vec<_> = stops.iter().map(|stop| (stop.pose.tip().x, stop.pose.tip().z)).collect();
-    let expected = [(0.0, 3.0), (0.0, 23.0), (5.0, 23.0), (5.0, 15.0), (5.0, 23.0), (9.0, 40.0)];
-    assert_eq!(ends, expected);
+    // To a hole that is higher than the one before some controls rise first, and some go sideways.
+    let text = "UNITS/MM\nGOTO/0,0,3\nCYCLE/DRILL,FEDTO,5,RAPTO,3\nGOTO/5,0,20\nCYCLE/OFF\nFINI\n";
+    assert_eq!(refusal(text.to_owned()), (4, "P0531"));
+    let above = text.replace("GOTO/0,0,3", "GOTO/5,0,3");
+    let ends = program(&above).locations.into_iter().map(|stop| stop.pose.tip().z);
+    assert!(ends.eq([3.0, 23.0, 15.0, 23.0]), "{above}");
 }
 
 /// Every obstacle is said at once, each with its first line.

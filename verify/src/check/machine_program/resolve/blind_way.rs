@@ -13,14 +13,18 @@ impl Resolver<'_> {
         let is_unknown = |k: usize, end: &Position| end[k].is_none() && self.has_axis(k);
         let [starts_blind, ends_blind] =
             ends.each_ref().map(|end| [0, 1, 3, 4, 5].into_iter().any(|k| is_unknown(k, end)));
-        if !step.commanded.contains(&true) || !(starts_blind || ends_blind) {
+        let [starts_at_level, ends_at_level] = ends.map(|end| end[2].is_some());
+        // From an unknown height, but aside between known places: the operator does not move there.
+        let goes_aside = !starts_at_level
+            && ends_at_level
+            && [0, 1].into_iter().any(|k| ends[0][k].is_some_and(|from| ends[1][k] != Some(from)));
+        if !step.commanded.contains(&true) || !(starts_blind || ends_blind || goes_aside) {
             return None;
         }
         // From where nothing is known, the operator moves to the first position. Under tool centre point control Z of the tip can be
         // stated before the axes are known.
-        let [starts_at_level, ends_at_level] = ends.map(|end| end[2].is_some());
         let states_z = step.state.turns_with_workpiece() && step.start[2].is_some();
-        if !(starts_at_level || ends_at_level && ends_blind || states_z) {
+        if !(starts_at_level || ends_at_level && ends_blind || states_z || goes_aside) {
             return None;
         }
         let is_at_top = ends.iter().all(|end| end[2].is_some_and(|z| self.is_top(z)));

@@ -10,7 +10,7 @@ use crate::gcode::{
     self, BlockLine, Choice, ControlSetup, ControlState, Position, Rotation, Rule, Step, StepPath,
     Tcp, WorkOffset, Z_ALONE,
 };
-use crate::machine::{Chain, JointMotion, Joints, Letter, Machine, Side};
+use crate::machine::{Chain, JointMotion, Joints, Letter, LimitViolation, Machine, Side};
 use frame::Frame;
 use nalgebra::{Point3, Vector3};
 use std::collections::BTreeMap;
@@ -434,6 +434,17 @@ impl<'a> Resolver<'a> {
         };
         let rise = path::line(&chain, [joints, end])?;
         Ok(Resolved::Departure(Box::new(rise), UnknownCause::Home))
+    }
+
+    /// Returns the limits beyond which a step ends whose joints are known in part.
+    pub(super) fn known_violations(&self, step: &Step) -> Vec<LimitViolation> {
+        let axes = self.machine.axes().iter();
+        let commanded = axes.filter(|axis| step.commanded[axis.letter.index()]);
+        let violations = commanded.filter_map(|axis| {
+            let value = self.joints[axis.letter.index()]?;
+            LimitViolation::of_joint(axis.letter, value, axis.limits?)
+        });
+        violations.collect()
     }
 
     /// Notes that a rotary axis has left an aligned plane, if it has moved.
