@@ -109,11 +109,12 @@ def test_findings_become_a_table(folder):
 
 def test_errors_name_the_file_and_the_line(folder):
     (folder / "plate.nc").write_text("G21 G90\nG1 X1. Q9 W\n")
-    broken = touchoff.Job(folder=folder, part="block.ply", unit="mm", program="plate.nc", tool={1: {"tool": "Ball"}})
+    keys = {"unit": "mm", "program": "plate.nc", "control": "linuxcnc", "tool": {1: {"tool": "Ball"}}}
+    broken = touchoff.Job(folder=folder, part="block.ply", **keys)
     report = broken.check()
     assert report.verdict == "none" and not report.findings
     assert any("plate.nc:2: Q is used by no G or M word" in reason or "plate.nc:2: W" in reason for reason in report.refusals)
-    missing = touchoff.Job(folder=folder, part="none.ply", unit="mm", program="plate.nc", tool={1: {"tool": "Ball"}})
+    missing = touchoff.Job(folder=folder, part="none.ply", **keys)
     (folder / "plate.nc").write_text(PROGRAM.format(depth=1.0))
     with pytest.raises(touchoff.JobError, match="none.ply"):
         missing.check()

@@ -108,7 +108,7 @@ class Report:
         """Return the findings as a table of pandas, a row each."""
         import pandas
 
-        return pandas.DataFrame([{"text": finding.text, **finding.row} for finding in self.findings])
+        return pandas.DataFrame([finding.row for finding in self.findings])
 
     def _repr_html_(self) -> str:
         rows = "".join(
@@ -167,8 +167,7 @@ class Job:
 
 
 def _finding(row: dict[str, Any]) -> Finding:
-    text = row.pop("text")
-    return Finding(text, row["kind"], row["file"], row["line"], row)
+    return Finding(row["text"], row["kind"], row["file"], row["line"], row)
 
 
 def _plain(value: Any) -> Any:

@@ -14,8 +14,8 @@ def verify(job, program=None, **more):
     import touchoff
 
     with tempfile.TemporaryDirectory() as folder:
-        keys = jobs.write(job, folder, program)
-        keys.update(more)
+        # FreeCAD knows the post-processor, and not the control: without one, every control's way is checked.
+        keys = {"control": "generic", **jobs.write(job, folder, program), **more}
         report = touchoff.Job(folder=folder, **keys).check()
     findings.show(job.Document, report, keys["program"])
     return report

@@ -331,12 +331,13 @@ impl Code {
             Ok(_)
                 if matches!(
                     (self.letter, self.tenths),
-                    ('M', 30 | 40 | 50 | 190 | 290) | ('G', 670)
+                    ('M', 30 | 40 | 50 | 190 | 290 | 890) | ('G', 670)
                 ) =>
             {
                 false
             }
-            Ok(group) => matches!(group, Group::PassedOver | Group::PathControl),
+            // What the control does at corners is said.
+            Ok(group) => group == Group::PassedOver,
             Err(GcodeFault::NotRead { remedy, .. }) => remedy == IGNORE,
             Err(_) => true,
         }

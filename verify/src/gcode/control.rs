@@ -371,16 +371,6 @@ impl Control {
         self.rules.get(rule).unwrap_or_else(|| rule.choices().next().expect("a rule has choices"))
     }
 
-    /// Returns whether a length offset is in force.
-    pub(super) fn has_length_offset(&self) -> bool {
-        self.state.length != LengthOffset::Off
-    }
-
-    /// Returns whether cutter compensation is in force.
-    pub(super) fn compensates(&self) -> bool {
-        self.compensation.is_some()
-    }
-
     /// Returns whether a canned cycle is in force.
     pub(super) fn is_in_cycle(&self) -> bool {
         self.modal.cycle().is_some()
@@ -446,6 +436,10 @@ impl Control {
         self.figure_words(block)?;
         self.map_coordinates(block)?;
         self.compensation_words(block, register)?;
+        // A centre that is not stated is the position, which depends on it.
+        if block.code_of(Group::Rotation).is_some() && block.code_of(Group::Length).is_none() {
+            self.returned_length(block);
+        }
         self.coordinates(block)?;
         self.returned_length(block);
         if self.depends_on_length(block) {

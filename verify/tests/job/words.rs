@@ -454,7 +454,11 @@ fn words_of_one_block_do_not_hide_each_other() {
     // What an ignored word may own, and a word in force.
     let ignored = scene("G0 Z35. H2 M130").with("ignore = { M130 = \"a lamp\" }");
     ignored.gives(FANUC, NONE, &["P0120 8 H"]);
-    for word in ["M3", "M05", "M19", "M29", "G67"] {
+    for (block, pattern) in [("M130 H2", "P0120 8 H"), ("M130 D2", "P0120 8 D")] {
+        let ignored = scene(block).with("ignore = { M130 = \"a lamp\" }");
+        ignored.gives(FANUC, NONE, &[pattern]);
+    }
+    for word in ["M3", "M05", "M19", "M29", "M89", "G64", "G67"] {
         let text = format!("ignore = {{ {word} = \"a lamp\" }}");
         assert!(scene("").with(&text).check(FANUC).has("K0504"), "{word}");
     }

@@ -233,7 +233,7 @@ impl Control {
             Some(280 | 300) => block.is_nonzero("Z") || block.has('Z') && !self.modal.incremental,
             Some(920) => block.has('Z'),
             Some(_) => false,
-            None => self.depends_on_length(block),
+            None => self.depends_on_length(block) || block.code_of(Group::Rotation).is_some(),
         };
         let Some(returned) = self.returned.filter(|_| matters) else { return };
         self.returned = None;
@@ -287,12 +287,16 @@ impl Control {
                 && self.moves_by_length(&before, height)
             {
                 let is_rotated = self.state.rotation != Rotation::Off;
-                if is_rotated || block.has_any(if is_owned { "XYZABC" } else { "XYABC" }) {
+                let others = if is_owned { "XYZABCIJK" } else { "XYABCIJK" };
+                if is_rotated || block.has_any(others) {
                     let condition = "the length offset changes, and moves Z";
                     let remedy = "write it in a block of its own, without a rotation";
                     return Err(combination(code, condition, remedy));
                 }
-                self.move_along_z(height);
+                let rapid = matches!(self.modal.motion, None | Some(Motion::Rapid));
+                self.move_along_z(height, rapid);
+            } else if has_returned {
+                self.height_before = None;
             }
         }
         self.transformation(block)?;
@@ -413,10 +417,9 @@ impl Control {
     }
 
     /// Moves Z to the coordinate that it had before.
-    pub(super) fn move_along_z(&mut self, height: Option<f64>) {
+    pub(super) fn move_along_z(&mut self, height: Option<f64>, rapid: bool) {
         let mut end = self.position;
         end[2] = height;
-        let rapid = matches!(self.modal.motion, None | Some(Motion::Rapid));
         (self.length_changed, self.height_before) = (false, None);
         self.push(rapid, end, Z_ALONE, StepPath::Line);
     }

@@ -374,7 +374,12 @@ impl Control {
                 self.check_after_rotation(block)?;
                 let is_linuxcnc = self.stated(Rule::Dialect) == Some(Choice::Rs274Ngc);
                 if let Some(height) = self.height_before.filter(|_| !is_linuxcnc) {
-                    self.move_along_z(Some(height));
+                    if block.has_any("XYABC") {
+                        let condition =
+                            "the length offset has changed, which may act on Z in its block";
+                        return Err(combination(word, condition, "write Z in a block before"));
+                    }
+                    self.move_along_z(Some(height), true);
                 }
             }
             _ => self.check_position(block)?,
@@ -418,6 +423,9 @@ impl Control {
         target: Position,
         path: StepPath,
     ) {
+        if commanded[2] {
+            self.height_before = None;
+        }
         // The kinematics have no part while the rotary axes turn nothing.
         let mut state = (*self.state).clone();
         if self.turns_nothing() {

@@ -327,8 +327,9 @@ impl<'a> Program<'a> {
         }
         let ignores = line.ignores;
         let taken = [
-            ("H", Group::Length, control.has_length_offset()),
-            ("D", Group::CutterCompensation, control.compensates()),
+            // The next G43 or G41 takes the last of them.
+            ("H", Group::Length, true),
+            ("D", Group::CutterCompensation, true),
             ("QRL", Group::Motion, control.is_in_cycle()),
         ];
         let taken = taken.into_iter().find(|(letters, group, in_force)| {

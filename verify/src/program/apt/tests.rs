@@ -528,7 +528,7 @@ fn cycles_drill_at_each_position() {
     assert_eq!(refusal(text.to_owned()), (4, "P0531"));
     let above = text.replace("GOTO/0,0,3", "GOTO/5,0,3");
     let ends = program(&above).locations.into_iter().map(|stop| stop.pose.tip().z);
-    assert!(ends.eq([3.0, 23.0, 15.0, 23.0]), "{above}");
+    assert!(ends.eq([3.0, 23.0, 23.0, 15.0, 23.0]), "{above}");
 }
 
 /// Every obstacle is said at once, each with its first line.
