@@ -525,7 +525,7 @@ fn cycles_drill_at_each_position() {
     assert_eq!(heights("CYCLE/TAP,FEDTO,5,RAPTO,3,RTRCTO,AUTO"), back);
     // To a hole that is higher than the one before some controls rise first, and some go sideways.
     let text = "UNITS/MM\nGOTO/0,0,3\nCYCLE/DRILL,FEDTO,5,RAPTO,3\nGOTO/5,0,20\nCYCLE/OFF\nFINI\n";
-    assert_eq!(refusal(text.to_owned()), (4, "P0531"));
+    assert_eq!(refusal(text), (4, "P0531"));
     let above = text.replace("GOTO/0,0,3", "GOTO/5,0,3");
     let ends = program(&above).locations.into_iter().map(|stop| stop.pose.tip().z);
     assert!(ends.eq([3.0, 23.0, 23.0, 15.0, 23.0]), "{above}");
