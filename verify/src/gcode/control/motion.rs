@@ -374,7 +374,7 @@ impl Control {
                 self.check_after_rotation(block)?;
                 let is_linuxcnc = self.stated(Rule::Dialect) == Some(Choice::Rs274Ngc);
                 if let Some(height) = self.height_before.filter(|_| !is_linuxcnc) {
-                    if block.has_any("XYABC") {
+                    if block.is_nonzero("XYABC") {
                         let condition =
                             "the length offset has changed, which may act on Z in its block";
                         return Err(combination(word, condition, "write Z in a block before"));
