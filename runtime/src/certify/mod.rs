@@ -31,7 +31,7 @@ mod triangle;
 mod verdict;
 
 pub use containment::Containment;
-pub use motion_depth::THROUGH_FRACTION;
+pub use motion_depth::{MIN_SWEEP_ERRORS, THROUGH_FRACTION};
 pub use nearest::NearestTriangle;
 pub use part::{BoxVisitor, Location, TriangleBvh};
 pub use scene::{BodyAnswer, CertifiedScene};

@@ -58,7 +58,7 @@ const MIN_SWEEP_TOLERANCE: f64 = 16.0;
 
 /// To that comes this number of times the error of the trajectory. A point is found to be too deep from 1 error above the
 /// limit, as it is that far from where the approximating motion has it, and it is ruled out up to 1 below the tolerance.
-const MIN_SWEEP_ERRORS: f64 = 8.0;
+pub const MIN_SWEEP_ERRORS: f64 = 8.0;
 
 /// The tolerance of a motion's greatest depth is at least this times that of a sweep: half of it is for the sweep.
 const MIN_DEPTH_TOLERANCE: f64 = 2.0;

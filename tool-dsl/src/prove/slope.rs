@@ -286,8 +286,8 @@ impl<'g> Slopes<'g> {
             Node::Mul(a, b) if a == b => v(a).square(),
             Node::Mul(a, b) => v(a).times(v(b)),
             Node::Div(a, b) | Node::Quotient(a, b) => v(a).over(v(b)),
-            // Where one is smaller throughout the box there is no kink. Where they are equal at its side there is one: the function
-            // need not fall beyond it as it does within.
+            // No kink stands where one is smaller throughout the closed box. Where they are equal at its side there is one: the
+            // function need not fall beyond it as it does within.
             Node::Min(a, b) if v(a).value.high < v(b).value.low => v(a),
             Node::Min(a, b) if v(b).value.high < v(a).value.low => v(b),
             Node::Max(a, b) if v(a).value.low > v(b).value.high => v(a),

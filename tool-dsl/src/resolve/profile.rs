@@ -106,7 +106,7 @@ pub(super) fn outline(
     if frame.spindle_down {
         segments.reverse();
     }
-    // So far from its tip the digits of a tool are lost, and with them what was checked.
+    // A tool so far from its tip loses its digits, and with them what was checked.
     let [[_, end], [radius, high]] = bounding_box(&segments);
     if end.abs() > MAX_TIP_IN_SIZES * radius.max(high - end) {
         return Err(Reported::push(diagnostics, off_tip(&frame, [end, high])));

@@ -4,7 +4,9 @@ use super::moves::{JointTrajectory, Move, MovePath, RapidBox, displacement};
 use super::{Finding, FindingKind, Verifier, VerifyError};
 use std::collections::VecDeque;
 use std::sync::Arc;
-use touchoff::certify::{Certifier, MotionDepth, MotionVerdict, THROUGH_FRACTION, Trajectory};
+use touchoff::certify::{
+    Certifier, MIN_SWEEP_ERRORS, MotionDepth, MotionVerdict, THROUGH_FRACTION, Trajectory,
+};
 use touchoff::tool::Symmetry;
 use touchoff::{Interval, Motion, MotionError, Pose, SurfaceId};
 
@@ -31,9 +33,6 @@ struct TimedFinding {
     time: f64,
     kind: FindingKind,
 }
-
-/// Number of errors of a trajectory up to which a certifier need not find an excess of depth ([`Certifier::check_motion`]).
-const SWEEP_ERRORS: f64 = 8.0;
 
 /// Largest number of pieces of a box that are halved.
 const MAX_PIECES: usize = 1 << 14;
@@ -92,8 +91,8 @@ impl<'a> Checker<'a> {
                     let FreeSpace { reach, symmetry, .. } = self.free_space;
                     let trajectory = JointTrajectory::new(path, symmetry, reach);
                     found = self.contacts(step.rapid, &trajectory, self.verifier.resolution);
-                    // What is as deep as the error of the path need not be found.
-                    let missed = SWEEP_ERRORS * trajectory.error() * self.verifier.lipschitz();
+                    // An excess of depth up to so many errors of the path need not be found.
+                    let missed = MIN_SWEEP_ERRORS * trajectory.error() * self.verifier.lipschitz();
                     if found.is_empty() && missed > self.verifier.resolution {
                         let undecided = self.undecided();
                         found = undecided.map(|kind| TimedFinding { time: 0.5, kind }).collect();

@@ -508,7 +508,7 @@ impl MachineProgram {
                 summary.bare_blocks.insert(step.block());
             }
             let arrives = matches!(resolved, Resolved::Arrival(..));
-            // What is known of a way, and the other curves of an arc, keep the limits, too.
+            // The known part of a way and the other curves of an arc keep the limits, too.
             let further: Vec<&JointMotion> = match &resolved {
                 Resolved::Arrival(rest, _) | Resolved::Loaded(rest) => vec![rest],
                 Resolved::Band(band) => band.curves.iter().map(|(curve, _)| curve).collect(),

@@ -259,10 +259,29 @@ impl<'a> Verifier<'a> {
     /// Returns whether a surface of the tool could violate its limit or its margin in feed or in rapid traverse, as far
     /// as `modes` has them in this order. `max_depths` has the greatest possible depth of each surface.
     fn restricts(&self, modes: [bool; 2], max_depths: &[f64]) -> bool {
-        let modes = [false, true].into_iter().filter(|mode| modes[usize::from(*mode)]);
-        modes
-            .flat_map(|rapid| self.limits(rapid).into_iter().zip(max_depths))
-            .any(|(limit, max_depth)| limit < 0.0 || limit + self.resolution < *max_depth)
+        used(modes).any(|rapid| self.can_violate(rapid, max_depths).contains(&true))
+    }
+
+    /// Returns the surfaces that are nowhere as deep as the tolerance, as the thin disc of a saw: no finding of them is possible in feed,
+    /// if nothing states an allowance for them, or in rapid traverse, as far as `modes` has them in this order.
+    fn unchecked_surfaces(&self, modes: [bool; 2], max_depths: &[f64]) -> Vec<SurfaceId> {
+        let mut is_unchecked = vec![false; self.allowed.len()];
+        for rapid in used(modes) {
+            for (index, can_violate) in self.can_violate(rapid, max_depths).into_iter().enumerate()
+            {
+                // An allowance is for cutting.
+                is_unchecked[index] |= !can_violate && (rapid || self.allowed[index].is_none());
+            }
+        }
+        (0..is_unchecked.len()).filter(|index| is_unchecked[*index]).map(SurfaceId).collect()
+    }
+
+    /// Returns for each surface whether it could violate its limit or its margin.
+    fn can_violate(&self, rapid: bool, max_depths: &[f64]) -> Vec<bool> {
+        let limits = self.limits(rapid).into_iter().zip(max_depths);
+        limits
+            .map(|(limit, max_depth)| limit < 0.0 || limit + self.resolution < *max_depth)
+            .collect()
     }
 
     /// Returns an upper bound on the distance of the tool's points from its tip, in the part's unit.
@@ -278,20 +297,6 @@ impl<'a> Verifier<'a> {
         info.depth.lipschitz.unwrap_or(unproved).max(1.0)
     }
 
-    /// Returns the surfaces that nothing states an allowance for and that are nowhere as deep as the tolerance, as the thin disc of a saw:
-    /// no finding of them is possible in feed or in rapid traverse, as far as `modes` has them in this order.
-    fn unchecked_surfaces(&self, modes: [bool; 2], max_depths: &[f64]) -> Vec<SurfaceId> {
-        let modes = || [false, true].into_iter().filter(|mode| modes[usize::from(*mode)]);
-        let is_unchecked = |index: &usize| {
-            // An allowance is for cutting.
-            modes().any(|rapid| {
-                (rapid || self.allowed[*index].is_none())
-                    && self.limits(rapid)[*index] + self.resolution >= max_depths[*index]
-            })
-        };
-        (0..self.allowed.len()).filter(is_unchecked).map(SurfaceId).collect()
-    }
-
     /// Returns the depth that each surface is allowed.
     fn limits(&self, rapid: bool) -> Vec<f64> {
         let limits = self.allowed.iter().map(|allowed| {
@@ -301,6 +306,11 @@ impl<'a> Verifier<'a> {
         });
         limits.collect()
     }
+}
+
+/// Returns the modes that a program uses, `true` for rapid traverse; `modes` has feed and rapid traverse in this order.
+fn used(modes: [bool; 2]) -> impl Iterator<Item = bool> {
+    [false, true].into_iter().filter(move |rapid| modes[usize::from(*rapid)])
 }
 
 /// A check of motions that are added one by one, in the order of the program.

@@ -336,7 +336,7 @@ impl Code {
             {
                 false
             }
-            // What the control does at corners is said.
+            // The words of path control decide what is said of corners.
             Ok(group) => group == Group::PassedOver,
             Err(GcodeFault::NotRead { remedy, .. }) => remedy == IGNORE,
             Err(_) => true,

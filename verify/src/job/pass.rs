@@ -426,7 +426,7 @@ impl<'a> Job<'a> {
                 let revolved = &self.revolved[index];
                 // In an empty spindle no tool could be longer.
                 let is_empty = is_of(|summary| &summary.empty_blocks);
-                // Without a length offset a longer tool lifts nothing.
+                // A longer tool lifts nothing without a length offset.
                 let is_lifted = !is_empty
                     && !is_of(|summary| &summary.bare_blocks)
                     && machine.is_some_and(|machine| revolved.is_lifted_by_length(machine));

@@ -172,7 +172,7 @@ struct Reader {
     is_creo: bool,
     /// The arc that the last statement ended.
     ended_arc: Option<Arc>,
-    /// Whether the arcs turn about their normals, as far as their angles tell: older post processors state one normal for both
+    /// Direction of the arcs, as far as their angles tell, `true` if all turn about their normals: older post processors state one normal for both
     /// directions.
     turns_about_normals: Option<bool>,
     /// The line of the first arc whose angle is that of both directions.
@@ -701,7 +701,7 @@ const BLOCK_WORDS: [&str; 14] =
 /// Returns whether a text, in capitals, could be a block for a control: if it has a code, a word of a control, a variable or a call, or
 /// letters with numbers and no word that a block cannot have. A comment in parentheses and prose are none.
 fn could_move(text: &str) -> bool {
-    // What follows a name in parentheses is a comment, or the arguments of a call.
+    // A parenthesis after a name has a comment, or the arguments of a call.
     let mut plain = String::new();
     let mut depth = 0;
     for character in text.chars() {

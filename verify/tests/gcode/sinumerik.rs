@@ -354,7 +354,7 @@ fn tool_vectors_under_traori_are_in_program_coordinates() {
     assert_eq!(vectors[4], None);
     assert_eq!((all[1].end[3], all[1].commanded[3]), (None, true));
     assert_eq!((all[1].state.tcp, all[1].state.orientation), (Tcp::Transformation, None));
-    // What decides depends on the machine, so that both have to agree.
+    // The machine decides which of both counts, so that they have to agree.
     for (words, orientation) in [
         ("ORIAXES", None),
         ("ORIMKS ORIAXES", Some(Choice::ByAxes)),

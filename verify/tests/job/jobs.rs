@@ -231,7 +231,7 @@ fn a_tool_that_is_thinner_than_the_points_of_the_stock_are_apart_is_named() {
     let pin = "line to (0.5, 0), (0.5, 40), (0, 40) as pin cutting;";
     let necked = "line to (3, 0), (3, 3) as disc cutting; line to (0.75, 3), (0.75, 30) as neck; \
                   line to (3, 30), (3, 40), (0, 40) as shank;";
-    // Beside a wide arbor the disc of a saw is as thin.
+    // A saw has a disc as thin beside its wide arbor.
     let saw =
         "line to (30, 0), (30, 0.8), (8, 0.8) as disc cutting; line to (8, 40), (0, 40) as arbor;";
     for (profile, spacing, verdict, pattern) in [

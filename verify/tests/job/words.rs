@@ -451,7 +451,7 @@ fn words_of_one_block_do_not_hide_each_other() {
     scene("G68 X0. Y0. R90.\nG0 X9. Y0.\nG69\nG28 X0.").gives(FANUC, NONE, &["P0120 11 G69"]);
     let stays = rules("fanuc").with(Rule::LengthChange, Choice::WithNextZ);
     scene("G49\nG91 G28 Z10.").gives_by(stays, NONE, &["P0120 9 Z"]);
-    // What an ignored word may own, and a word in force.
+    // Letters that an ignored word may own, and a word in force.
     let ignored = scene("G0 Z35. H2 M130").with("ignore = { M130 = \"a lamp\" }");
     ignored.gives(FANUC, NONE, &["P0120 8 H"]);
     for (block, pattern) in [("M130 H2", "P0120 8 H"), ("M130 D2", "P0120 8 D")] {

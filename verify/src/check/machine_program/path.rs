@@ -217,12 +217,12 @@ mod tests {
     #[test]
     fn chords_of_long_arcs_are_as_near_as_those_of_short_ones() {
         let turn = nalgebra::Rotation3::from_axis_angle(&Vector3::x_axis(), 0.5);
-        let map_ = Map { rotation: *turn.matrix(), origin: Vector3::zeros() };
+        let tilt = Map { rotation: *turn.matrix(), origin: Vector3::zeros() };
         for radius in [10.0, 1e3, 6e5] {
             let sweep = 300.0 / radius;
             let path = StepPath::Arc { plane: Plane::Xy, centre: [0.0, radius], sweep };
             let end = [radius * sweep.sin(), radius * (1.0 - sweep.cos()), 0.0];
-            let segments = map(&path, [[0.0; 3], end], &map_).unwrap_or_default();
+            let segments = map(&path, [[0.0; 3], end], &tilt).unwrap_or_default();
             assert!(segments.len() > 1, "{radius}");
             assert!(
                 segments.iter().all(|segment| segment.error <= 1.001 * CHORD_TOLERANCE),

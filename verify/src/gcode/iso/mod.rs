@@ -326,16 +326,14 @@ impl<'a> Program<'a> {
             return Err(combination("axis words", condition, remedy));
         }
         let ignores = line.ignores;
-        let taken = [
-            // The next G43 or G41 takes the last of them.
-            ("H", Group::Length, true),
-            ("D", Group::CutterCompensation, true),
-            ("QRL", Group::Motion, control.is_in_cycle()),
-        ];
-        let taken = taken.into_iter().find(|(letters, group, in_force)| {
-            *in_force && block.code_of(*group).is_none() && block.has_any(letters)
-        });
-        if let (true, Some((letters, ..))) = (ignores, taken) {
+        // The next G43 or G41 takes the last H or D, and a cycle its letters.
+        let of_cycle = if control.is_in_cycle() { "QRL" } else { "" };
+        let taken =
+            [("H", Group::Length), ("D", Group::CutterCompensation), (of_cycle, Group::Motion)];
+        let taken = taken
+            .into_iter()
+            .find(|(letters, group)| block.code_of(*group).is_none() && block.has_any(letters));
+        if let (true, Some((letters, _))) = (ignores, taken) {
             let condition = "its block has an ignored word, whose own it could be, as well as that of what is in force";
             return Err(combination(letters, condition, "write the word in a block of its own"));
         }

@@ -14,7 +14,7 @@ impl Resolver<'_> {
         let [starts_blind, ends_blind] =
             ends.each_ref().map(|end| [0, 1, 3, 4, 5].into_iter().any(|k| is_unknown(k, end)));
         let [starts_at_level, ends_at_level] = ends.map(|end| end[2].is_some());
-        // From an unknown height, but aside between known places: the operator does not move there.
+        // A way from an unknown height, but aside between known places, is none that the operator moves.
         let goes_aside = !starts_at_level
             && ends_at_level
             && [0, 1].into_iter().any(|k| ends[0][k].is_some_and(|from| ends[1][k] != Some(from)));
