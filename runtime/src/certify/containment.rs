@@ -7,6 +7,7 @@ use crate::certify::rounding;
 use crate::certify::search::QuerySetting;
 use crate::certify::space::Point;
 use crate::certify::tool_model::field::FieldCore;
+use crate::certify::tool_model::profile::ProfileModel;
 use crate::certify::tool_model::{ToolModel, interior};
 use crate::id::SurfaceId;
 use crate::pose::Pose;
@@ -54,8 +55,8 @@ pub(crate) struct CorePoints {
 #[derive(Clone, Copy)]
 struct Core {
     point: Point,
-    /// The radius of a ball about the point that may have a piece; 0 if the point itself belongs to one.
-    radius: f64,
+    /// The radius of a ball about the point that may have a piece; `None` if the point itself belongs to one.
+    radius: Option<f64>,
     surface: SurfaceId,
 }
 
@@ -94,14 +95,14 @@ impl CorePoints {
         tolerance: f64,
     ) -> Option<Vec<Core>> {
         match tool_model {
-            ToolModel::Profile(section) => {
-                let surfaces = (0..section.features.len()).map(|k| tool_model.surface(k));
+            ToolModel::Profile(ProfileModel { section, .. }) => {
+                let surfaces = (0..section.outline.features.len()).map(|k| tool_model.surface(k));
                 let limits: Vec<f64> = surfaces.map(|surface| self.limits[surface.0]).collect();
                 let witnesses = interior::witnesses(section, &limits, tolerance);
                 // Any azimuth will do: a tool with a profile is a solid of revolution.
                 let core_points = witnesses.iter().map(|witness| Core {
                     point: [witness.point[0], 0.0, witness.point[1]],
-                    radius: 0.0,
+                    radius: None,
                     surface: tool_model.surface(witness.feature),
                 });
                 Some(core_points.collect())
@@ -135,14 +136,13 @@ impl QuerySetting<'_> {
         let Some(pieces) = pieces else { return Containment::Undecided };
         let mut found = Containment::Outside;
         for Core { point, radius, surface } in pieces {
-            let location = if *radius > 0.0 {
-                self.locate_ball(*point, *radius, pose)
-            } else {
-                self.bvh.locate(self.to_world(pose, *point))
+            let location = match radius {
+                Some(radius) => self.locate_ball(*point, *radius, pose),
+                None => self.bvh.locate(self.to_world(pose, *point)),
             };
             match location {
                 // A ball inside need not have a piece.
-                Location::Inside if *radius > 0.0 => found = Containment::Undecided,
+                Location::Inside if radius.is_some() => found = Containment::Undecided,
                 Location::Inside => return Containment::Inside(*surface),
                 Location::Unknown => return Containment::Unknown,
                 // Another piece may still be certain to be inside.
@@ -161,7 +161,7 @@ impl QuerySetting<'_> {
         pose: &Pose,
         tolerance: f64,
     ) -> f64 {
-        let ToolModel::Profile(section) = &self.tool_model else { return 0.0 };
+        let ToolModel::Profile(ProfileModel { section, .. }) = &self.tool_model else { return 0.0 };
         let pieces = core_points.pieces_deeper_than(&self.tool_model, self.info(), tolerance);
         let mut triangles = NearestTriangle::new(&self.bvh);
         let error = rounding::APART * self.error * self.length;
@@ -192,6 +192,6 @@ impl QuerySetting<'_> {
     /// Returns whether the restricted interior is one connected piece.
     pub(crate) fn is_one_piece(&self, core_points: &mut CorePoints, tolerance: f64) -> bool {
         let known = core_points.pieces_deeper_than(&self.tool_model, self.info(), tolerance);
-        matches!(known, Some([core]) if core.radius == 0.0)
+        matches!(known, Some([core]) if core.radius.is_none())
     }
 }

@@ -59,6 +59,7 @@ use std::sync::Arc;
 use sweep::Sweeper;
 use tool_model::ToolModel;
 use tool_model::owners::Owners;
+use tool_model::profile::ProfileModel;
 use triangle::line_search::Goal;
 
 /// A tool at a part's triangles: it answers queries at one pose after another with proved bounds.
@@ -581,7 +582,7 @@ impl Certifier<'_> {
 /// Returns an upper bound on the depth that a surface can have, in the tool's unit.
 fn max_possible_depth(setting: &QuerySetting<'_>, surface: usize) -> Option<f64> {
     match &setting.tool_model {
-        ToolModel::Profile(section) => {
+        ToolModel::Profile(ProfileModel { section, .. }) => {
             Some(Owners::of(section, |other| other == surface).greatest_depth(section))
         }
         ToolModel::Field(field) => {

@@ -14,8 +14,8 @@ use crate::certify::tool_model::ToolModel;
 use crate::certify::tool_model::feature::MeridianPoint;
 use crate::certify::tool_model::field::{Field, Scratch};
 use crate::certify::tool_model::owners::Owners;
+use crate::certify::tool_model::profile::ProfileModel;
 use crate::certify::tool_model::rectangle::Rectangle;
-use crate::certify::tool_model::section::Section;
 use crate::certify::triangle::line_search::{DeepestCandidate, DepthSearch, Goal, LineMaximum};
 use crate::certify::triangle::{LocalTriangle, SubTriangle, nearest};
 use crate::certify::verdict::{ToolPoint, Witness};
@@ -42,16 +42,18 @@ pub(crate) struct DepthQuery {
 impl DepthQuery {
     /// A query for the features of some surfaces. `margin` is the rounding error of a point in `f32`.
     fn new(
-        section: &Section,
+        profile: &ProfileModel,
         margin: f64,
         limit: f64,
         surfaces: impl Fn(usize) -> bool,
     ) -> DepthQuery {
+        let section = &profile.section;
+        let error = section.outline.error;
         if limit < 0.0 {
             let owners = Owners::near(section, surfaces);
             return DepthQuery {
-                hull: Hull::holding(section, &owners, margin),
-                exact: Hull::holding(section, &owners, section.error),
+                hull: Hull::holding(profile, &owners, margin),
+                exact: Hull::holding(profile, &owners, error),
                 shell: Shell::new(section, &owners, margin),
                 zones: Vec::new(),
                 owners,
@@ -59,10 +61,10 @@ impl DepthQuery {
             };
         }
         let owners = Owners::of(section, surfaces);
-        let zones = owners.zones(section, limit - rounding::ROOM * section.error);
+        let zones = owners.zones(section, limit - rounding::ROOM * error);
         DepthQuery {
-            hull: Hull::new(section, &zones, margin),
-            exact: Hull::new(section, &zones, section.error),
+            hull: Hull::new(profile, &zones, margin),
+            exact: Hull::new(profile, &zones, error),
             shell: Shell::new(section, &owners, margin),
             zones: zones.into_iter().flatten().collect(),
             owners,
@@ -149,7 +151,7 @@ impl QuerySetting<'_> {
     pub(crate) fn depth_query(&self, limit: f64, surfaces: impl Fn(usize) -> bool) -> DepthQuery {
         let margin = self.setup.margin;
         match &self.tool_model {
-            ToolModel::Profile(section) => DepthQuery::new(section, margin, limit, surfaces),
+            ToolModel::Profile(profile) => DepthQuery::new(profile, margin, limit, surfaces),
             ToolModel::Field(field) => {
                 DepthQuery::of_field(field, [margin, self.error], limit, surfaces)
             }
@@ -177,12 +179,14 @@ impl QuerySetting<'_> {
 
     /// Returns the point of the tool's surface that is the nearest to a candidate; `None` without a profile.
     pub(crate) fn tool_point(&self, best: &DeepestCandidate, pose: &Pose) -> Option<ToolPoint> {
-        let ToolModel::Profile(section) = &self.tool_model else { return None };
+        let ToolModel::Profile(ProfileModel { section, .. }) = &self.tool_model else {
+            return None;
+        };
         let [x, y, z] = best.point;
         let d = x.hypot(y);
         let [cosine, sine] = if d > 0.0 { [x / d, y / d] } else { [1.0, 0.0] };
         let to_tool = |[d, z]: MeridianPoint| Vector3::new(cosine * d, sine * d, z);
-        let foot = to_tool(section.features[best.feature].foot([d, z]));
+        let foot = to_tool(section.outline.features[best.feature].foot([d, z]));
         Some(ToolPoint {
             point: self.to_world(pose, foot.into()),
             normal: pose.rotation() * to_tool(section.normal(best.feature, [d, z])),
@@ -511,14 +515,15 @@ impl SearchState {
         side: Side,
     ) {
         let (corners, index) = (self.batch.corners(lane), self.batch.index(lane));
-        let section = match &setting.tool_model {
-            ToolModel::Profile(section) => section,
+        let profile = match &setting.tool_model {
+            ToolModel::Profile(profile) => profile,
             ToolModel::Field(_) => return self.scratch.hold(corners, index),
         };
         let triangle = LocalTriangle::new(corners);
         self.search.skew = self.search.skew.max(triangle.skew);
         let owners = &query.owners;
-        let heights = section.circles.iter().chain(&owners.peaks);
+        let section = &profile.section;
+        let heights = profile.circles.heights.iter().chain(&owners.peaks);
         let levels = heights.filter_map(|height| triangle.level(*height));
         // Points beside the computed meridian may be deeper by the skew. Contact checks start lower by two errors,
         // which covers a skew up to one error; a larger skew lowers the threshold for this triangle.
@@ -536,7 +541,7 @@ impl SearchState {
         }
         if let Side::Inside = side {
             let whole = SubTriangle::new(corners);
-            whole.leave_unresolved(section, owners, setting.error, &mut self.search);
+            whole.leave_unresolved(profile, owners, setting.error, &mut self.search);
         }
         if before.is_some_and(|before| self.search.raise(before, triangle.skew)) {
             self.best = best;

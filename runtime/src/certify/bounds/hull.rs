@@ -1,16 +1,21 @@
 //! Upper bounds of the depth of a tool in boxes and triangles, in SIMD lanes.
 
 use crate::bvh::{LaneVector, PoseTransform};
+use crate::certify::bounds::clip::Clip;
 use crate::certify::bounds::descent::{Bounds, BoxBounds, BoxRings, Children, rings};
-use crate::certify::bounds::nearest::{
-    AxisDistances, Clip, NearestPoint, Real, Ring, RingDistances, choose, direction_from_axis,
-    distances, extents_from, from_ring, max3, min3, radial_extents, under_both, under_both_of_ring,
+use crate::certify::bounds::lanes::{
+    Real, choose, distances, extents_from, max3, min3, radial_extents,
+};
+use crate::certify::bounds::nearest::{NearestPoint, direction_from_axis};
+use crate::certify::bounds::ring::{
+    AxisDistances, Ring, RingDistances, from_ring, under_both, under_both_of_ring,
 };
 use crate::certify::bounds::support::Support;
 use crate::certify::part::NodeRing;
 use crate::certify::tool_model::chains::Chain;
 use crate::certify::tool_model::feature::{Feature, MeridianPoint};
 use crate::certify::tool_model::owners::Owners;
+use crate::certify::tool_model::profile::ProfileModel;
 use crate::certify::tool_model::rectangle::Rectangle;
 use crate::certify::tool_model::section::Section;
 use crate::interval::Interval;
@@ -60,8 +65,12 @@ pub(crate) struct GuardedPlane<R> {
 impl<R: Real> Hull<R> {
     /// Creates a hull for points inside the tool. The slabs lie between the heights of their zones, and reach farther
     /// by the error bound of heights.
-    pub(crate) fn new(section: &Section, zones: &[Option<Rectangle>], error: f64) -> Hull<R> {
-        let slabs = section.chains.iter().filter_map(|chain| {
+    pub(crate) fn new(
+        ProfileModel { section, chains, .. }: &ProfileModel,
+        zones: &[Option<Rectangle>],
+        error: f64,
+    ) -> Hull<R> {
+        let slabs = chains.iter().filter_map(|chain| {
             let zones = zones[chain.slabs.clone()].iter().flatten();
             let heights = zones.map(|zone| [zone.low[1], zone.high[1]]);
             let [low, high] = heights.reduce(|one, other| [one[0], other[1]])?;
@@ -84,17 +93,18 @@ impl<R: Real> Hull<R> {
 
     /// Creates a hull of the regions that some features bound, for points no farther from these features than the
     /// hull is grown.
-    pub(crate) fn holding(section: &Section, owners: &Owners, error: f64) -> Hull<R> {
+    pub(crate) fn holding(profile: &ProfileModel, owners: &Owners, error: f64) -> Hull<R> {
+        let section = &profile.section;
         let zones: Vec<_> = section
             .slabs
             .iter()
             .map(|slab| owners.is_owned(slab.side).then_some(slab.rectangle()))
             .collect();
         // Points outside are no nearer to a plane that touches the tool than to the tool.
-        let mut hull = Hull { support: None, ..Hull::new(section, &zones, error) };
+        let mut hull = Hull { support: None, ..Hull::new(profile, &zones, error) };
         // A level feature is the side of no slab.
         let sides: Vec<usize> = section.slabs.iter().map(|slab| slab.side).collect();
-        for (index, feature) in section.features.iter().enumerate() {
+        for (index, feature) in section.outline.features.iter().enumerate() {
             if owners.is_owned(index) && !sides.contains(&index) {
                 let [[d0, z0], [d1, z1]] = feature.ends;
                 let heights = [z0.min(z1) - error, z0.max(z1) + error];
@@ -210,7 +220,7 @@ impl<R: Real> HullSlab<R> {
         // The first plane is the radial distance to the surface.
         let mut bounds = HullSlab::under(heights, vec![plane([1.0, 0.0], [radius, 0.0])]);
         bounds.hole = (slabs[0].hole > 0.0).then(|| R::of(slabs[0].hole));
-        bounds.ball = section.tip_ball_of(chain).map(|ball| ball.map(R::of));
+        bounds.ball = chain.ball.map(|ball| ball.map(R::of));
         match &chain.line {
             Some(line) => bounds.planes.push(under(line)),
             None => bounds.add_side(section, chain.slabs.start),
@@ -236,7 +246,7 @@ impl<R: Real> HullSlab<R> {
     /// Adds the bounds by the side of a single slab and by the lines beside it.
     fn add_side(&mut self, section: &Section, index: usize) {
         let slab = &section.slabs[index];
-        let side = &section.features[slab.side];
+        let side = &section.outline.features[slab.side];
         let [[d0, z0], [d1, z1]] = side.ends;
         let slope = (d1 - d0) / (z1 - z0);
         let convex = side.circle.is_some_and(|circle| circle.convex);
@@ -256,11 +266,11 @@ impl<R: Real> HullSlab<R> {
         }
         for line in section.lines_beside(slab) {
             let feet = section.outside_feet(line);
-            self.guarded.push(GuardedPlane::new(&section.features[line], feet));
+            self.guarded.push(GuardedPlane::new(&section.outline.features[line], feet));
         }
         // For an arc that does not reach the axis, the feet next to it are not on the surface.
         if d0.min(d1) == 0.0
-            && let Some(ball) = side.ball(section.size)
+            && let Some(ball) = side.ball(section.outline.size)
         {
             self.ball = Some(ball.map(R::of));
         }

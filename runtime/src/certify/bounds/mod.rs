@@ -7,15 +7,19 @@
 //! - `swept`: upper bounds of depth in moving boxes and triangles.
 //! - `batch`: eight triangles in `f64`.
 //! - `descent`: depth-first traversal of the tree, children with the largest bounds first.
-//! - `nearest`: geometry of triangles relative to the tool's axis, shared by all bounds.
+//! - `nearest`, `clip`, `ring`: geometry of triangles relative to the tool's axis, shared by all bounds.
+//! - `lanes`: vectors in SIMD lanes.
 //!
 //! Lengths are in the tool's unit. Absent boxes and triangles have NaN coordinates. A bound at or below the caller's
 //! threshold need not be tight.
 
 pub(crate) mod batch;
+pub(crate) mod clip;
 pub(crate) mod descent;
 pub(crate) mod hull;
+pub(crate) mod lanes;
 pub(crate) mod nearest;
+pub(crate) mod ring;
 pub(crate) mod shell;
 pub(crate) mod support;
 pub(crate) mod swept;

@@ -2,7 +2,8 @@
 
 use crate::bvh::{LaneVector, PoseTransform};
 use crate::certify::bounds::descent::{Bounds, BoxBounds, BoxRings, Children, rings};
-use crate::certify::bounds::nearest::{NearestPoint, max3, min3, radial_extents};
+use crate::certify::bounds::lanes::{max3, min3, radial_extents};
+use crate::certify::bounds::nearest::NearestPoint;
 use crate::certify::tool_model::owners::Owners;
 use crate::certify::tool_model::section::Section;
 use crate::tool::ToolInfo;
@@ -40,13 +41,13 @@ impl Shell {
 
     /// Creates the shell of the owners.
     pub(crate) fn new(section: &Section, owners: &Owners, margin: f64) -> Shell {
-        let features = section.features.iter().enumerate();
+        let features = section.outline.features.iter().enumerate();
         let owned = features.filter(|(index, _)| owners.is_owned(*index));
         let slabs = owned.filter_map(|(index, feature)| {
             // A level feature has no slab of its own. It needs none if all features are owned.
             let level = !section.slabs.iter().any(|slab| slab.side == index);
             let [[d0, z0], [d1, z1]] = feature.ends;
-            let ball = if level { None } else { feature.ball(section.size) };
+            let ball = if level { None } else { feature.ball(section.outline.size) };
             (!(owners.all() && level)).then(|| ShellSlab {
                 low: z0.min(z1) as f32,
                 high: z0.max(z1) as f32,

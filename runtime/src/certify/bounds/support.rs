@@ -1,7 +1,7 @@
 //! The planes that touch the whole tool from outside, which bound depth beside a triangle.
 
 use crate::bvh::LaneVector;
-use crate::certify::bounds::nearest::{Real, cross, dot, min3, minus};
+use crate::certify::bounds::lanes::{Real, cross, dot, min3, minus};
 use crate::certify::tool_model::feature::MeridianPoint;
 use crate::certify::tool_model::section::Section;
 use crate::tool::Circle;
@@ -34,11 +34,11 @@ impl<R: Real> Support<R> {
     /// Returns `None` for a tool whose other bounds are as tight, which has no convex arc but balls about the axis, and for one
     /// with an arc of so large a circle that the rounding of a normal's length, times its radius, is more than the margin.
     pub(crate) fn new(section: &Section) -> Option<Support<R>> {
-        let size = section.size;
-        let rounded = section
-            .features
-            .iter()
-            .filter_map(|feature| Some((feature, feature.circle.filter(|circle| circle.convex)?)));
+        let size = section.outline.size;
+        let rounded =
+            section.outline.features.iter().filter_map(|feature| {
+                Some((feature, feature.circle.filter(|circle| circle.convex)?))
+            });
         let is_large = |circle: &Circle| {
             let [d, z] = circle.centre;
             circle.radius.max(d.abs()).max(z.abs()) > size
@@ -57,7 +57,7 @@ impl<R: Real> Support<R> {
             }),
         });
         let mut corners: Vec<MeridianPoint> =
-            section.features.iter().flat_map(|feature| feature.ends).collect();
+            section.outline.features.iter().flat_map(|feature| feature.ends).collect();
         // Neighbours share an end.
         corners.dedup();
         let [low, high] = section.reach();

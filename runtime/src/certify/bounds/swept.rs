@@ -3,14 +3,14 @@
 
 use crate::bvh::{LaneVector, PoseTransform};
 use crate::certify::bounds::batch::{Batch, Lanes, load};
+use crate::certify::bounds::clip::Clip;
 use crate::certify::bounds::descent::{
     BoundedTree, BoxBounds, Children, Displacement, Node, above, rings,
 };
 use crate::certify::bounds::hull::{Hull, HullSlab};
-use crate::certify::bounds::nearest::{
-    Clip, NearestPoint, Real, choose, direction_from_axis, is_between, max3, min3, radial_extents,
-    to_ring,
-};
+use crate::certify::bounds::lanes::{Real, choose, is_between, max3, min3, radial_extents};
+use crate::certify::bounds::nearest::{NearestPoint, direction_from_axis};
+use crate::certify::bounds::ring::to_ring;
 use crate::certify::sweep::interval::MotionInterval;
 use crate::certify::triangle::TrianglePiece;
 use crate::tool::{LANES, on_vectors};

@@ -17,7 +17,7 @@ use crate::certify::space::{Point, minus};
 use crate::certify::sweep::interval::MotionInterval;
 use crate::certify::tool_model::field::Scratch;
 use crate::certify::tool_model::owners::Owners;
-use crate::certify::tool_model::section::Section;
+use crate::certify::tool_model::profile::ProfileModel;
 use crate::certify::tool_model::{Surroundings, ToolModel};
 use crate::certify::trajectory::Trajectory;
 use crate::certify::triangle::line_search::{DeepestCandidate, DepthSearch, Goal};
@@ -347,12 +347,12 @@ impl Sweeper {
         spread: Spread,
     ) -> Option<DeepPoint> {
         let SweepTask { setting, query, .. } = *task;
-        let section = match &setting.tool_model {
-            ToolModel::Profile(section) if query.owners.all() || task.limit < 0.0 => section,
+        let profile = match &setting.tool_model {
+            ToolModel::Profile(profile) if query.owners.all() || task.limit < 0.0 => profile,
             _ => return self.check_subdivided(task, interval, triangle, spread),
         };
         let corners = triangle.piece.corners().map(|corner| interval.in_the_middle(&corner));
-        match self.check_lines(task, section, &query.owners, &TriangleBand::whole(corners), spread)
+        match self.check_lines(task, profile, &query.owners, &TriangleBand::whole(corners), spread)
         {
             TriangleVerdict::TooDeep(deep) => return Some(deep),
             TriangleVerdict::Clear => {}
@@ -367,7 +367,7 @@ impl Sweeper {
     fn check_lines(
         &mut self,
         task: &SweepTask<'_>,
-        section: &Section,
+        profile: &ProfileModel,
         owners: &Owners,
         band: &TriangleBand,
         spread: Spread,
@@ -384,7 +384,8 @@ impl Sweeper {
             budget: self.budget,
         });
         let mut found = None;
-        let peaks = section.circles.iter().chain(&owners.peaks);
+        let section = &profile.section;
+        let peaks = profile.circles.heights.iter().chain(&owners.peaks);
         let levels = peaks.chain(heights).filter_map(|height| triangle.level(*height));
         for line in triangle.search_lines().chain(levels) {
             let Some(line) = line.between(*heights) else { continue };
@@ -397,7 +398,7 @@ impl Sweeper {
         }
         if least >= 0.0 {
             let whole = SubTriangle::new(triangle.corners);
-            whole.leave_unresolved(section, owners, displacement, &mut self.search);
+            whole.leave_unresolved(profile, owners, displacement, &mut self.search);
         }
         self.budget = self.search.remaining_budget();
         let Some(point) = found else {
@@ -479,7 +480,7 @@ impl Sweeper {
         if tool_model.clears(&mut self.scratch, owners, &points, task.threshold()) {
             return TriangleVerdict::Clear;
         }
-        if let ToolModel::Profile(section) = tool_model {
+        if let ToolModel::Profile(profile) = tool_model {
             let triangle = LocalTriangle::new(*piece.corners());
             let near = displacement + triangle.skew + rounding::APART * task.error;
             let Some(heights) = task.query.heights(&piece, near) else {
@@ -487,7 +488,7 @@ impl Sweeper {
             };
             // Owners need not be told apart where no surface at all is too deep.
             let band = TriangleBand { triangle, heights };
-            let other = match self.check_lines(task, section, &Owners::default(), &band, spread) {
+            let other = match self.check_lines(task, profile, &Owners::default(), &band, spread) {
                 TriangleVerdict::Halve(other) => other,
                 decided => return decided,
             };
@@ -498,7 +499,7 @@ impl Sweeper {
                 rectangle: SubTriangle::new([other; 3]).rectangle(near).corners(),
             };
             if !tool_model.clears(&mut self.scratch, owners, &points, task.threshold()) {
-                return match self.check_lines(task, section, owners, &band, spread) {
+                return match self.check_lines(task, profile, owners, &band, spread) {
                     TriangleVerdict::TooDeep(deep) => TriangleVerdict::TooDeep(deep),
                     _ => TriangleVerdict::Undecided,
                 };

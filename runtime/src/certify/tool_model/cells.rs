@@ -4,10 +4,11 @@
 //! comes nearer from an end that both share. A poor cut between cells costs candidates and never an answer. Features that nearly
 //! coincide stay together: no border between them is computed.
 
-use crate::certify::rounding;
 use crate::certify::tool_model::feature::{MeridianPoint, is_above_everywhere};
+use crate::certify::tool_model::outline::Outline;
 use crate::certify::tool_model::rectangle::Rectangle;
-use crate::certify::tool_model::section::{Section, SectionSlab};
+use crate::certify::tool_model::section::Section;
+use crate::certify::tool_model::slab::SectionSlab;
 
 /// A rectangle and its candidates.
 #[derive(Clone, Debug)]
@@ -47,32 +48,32 @@ const MAX_COMPARED: usize = 8;
 
 impl CellTree {
     /// Divides the rectangle about a profile.
-    pub(super) fn new(section: &Section) -> CellTree {
-        let ends = section.features.iter().flat_map(|feature| feature.ends);
+    pub(super) fn new(outline: &Outline) -> CellTree {
+        let ends = outline.features.iter().flat_map(|feature| feature.ends);
         let points = ends.map(|end| Rectangle { low: end, high: end });
         let whole = points.reduce(|one, other| one.widened(&other)).unwrap_or_default();
         let mut tree = CellTree { whole, nodes: Vec::new() };
-        let all: Vec<usize> = (0..section.features.len()).collect();
-        tree.divide(section, section.cell(whole, &all, section.owner_margin()));
+        let all: Vec<usize> = (0..outline.features.len()).collect();
+        tree.divide(outline, outline.cell(whole, &all, outline.owner_margin()));
         tree
     }
 
-    fn divide(&mut self, section: &Section, cell: Cell) {
-        let few = FEW.max(section.features.len() / FEW_SHARE);
-        if cell.candidates.len() <= few || cell.rectangle.ball().1 <= MIN_CELL * section.size {
+    fn divide(&mut self, outline: &Outline, cell: Cell) {
+        let few = FEW.max(outline.features.len() / FEW_SHARE);
+        if cell.candidates.len() <= few || cell.rectangle.ball().1 <= MIN_CELL * outline.size {
             self.nodes.push(CellNode::Undivided(cell.candidates));
             return;
         }
-        let [lower, upper] = section.halves(&cell, section.owner_margin());
+        let [lower, upper] = outline.halves(&cell, outline.owner_margin());
         let axis = usize::from(lower.rectangle.high[0] == upper.rectangle.high[0]);
         let index = self.nodes.len();
         self.nodes.push(CellNode::Halved { axis, at: upper.rectangle.low[axis], upper: 0 });
-        self.divide(section, lower);
+        self.divide(outline, lower);
         let next = self.nodes.len();
         if let CellNode::Halved { upper, .. } = &mut self.nodes[index] {
             *upper = next;
         }
-        self.divide(section, upper);
+        self.divide(outline, upper);
     }
 
     /// Returns the candidates of a point; `None` for a point outside the rectangle about the profile.
@@ -121,18 +122,15 @@ impl CellTree {
 }
 
 impl Section {
-    /// Returns the difference of two distances up to which both features count as the nearest: the errors of both.
-    pub(super) fn owner_margin(&self) -> f64 {
-        rounding::TIE * self.error
-    }
-
     /// Returns the cells of a slab.
     pub(super) fn cells_of(&self, slab: &SectionSlab) -> Vec<Cell> {
         self.cells.within(&slab.rectangle())
     }
+}
 
+impl Outline {
     /// Returns the cell of a rectangle. `among` are the candidates of a rectangle about it. A feature stays if it is farther than
-    /// the nearest by at most `margin`, unless a [neighbour](Section::hidden_by_neighbours) hides it.
+    /// the nearest by at most `margin`, unless a [neighbour](Outline::hidden_by_neighbours) hides it.
     pub(super) fn cell(&self, rectangle: Rectangle, among: &[usize], margin: f64) -> Cell {
         let (middle, reach) = rectangle.ball();
         let corners = rectangle.corners();

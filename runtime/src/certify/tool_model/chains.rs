@@ -13,15 +13,15 @@ pub(crate) struct Chain {
     /// If there are several, the line that touches their sides from outside, parallel to the chord of them. No point of them is
     /// deeper than its distance under it.
     pub(crate) line: Option<Feature>,
+    /// The height of the centre and the radius of a ball about a point of the axis that contains the chain and all slabs below it. It
+    /// bounds their depth: the way from a point to its foot on the ball leads downward, out of the tool.
+    pub(crate) ball: Option<[f64; 2]>,
 }
 
-/// A ball about a point of the axis that contains the lowest slabs of a tool. It bounds their depth: the way from a point to its
-/// foot on the ball leads downward, out of the tool.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct TipBall {
-    pub(crate) slab_count: usize,
-    /// The height of its centre and its radius.
-    pub(crate) ball: [f64; 2],
+/// The lowest slabs of a tool in a ball.
+struct TipBall {
+    slab_count: usize,
+    ball: [f64; 2],
 }
 
 /// The least number of lines that are taken together.
@@ -39,7 +39,8 @@ impl Section {
     /// Returns all slabs as chains, in upward order.
     pub(super) fn chains(&self) -> Vec<Chain> {
         // A chain belongs to the ball as a whole or not at all.
-        let tip_end = self.tip_ball.map(|tip| tip.slab_count);
+        let tip = self.tip_ball();
+        let tip_end = tip.as_ref().map(|tip| tip.slab_count);
         let mut chains = Vec::new();
         let mut next = 0;
         while next < self.slabs.len() {
@@ -53,11 +54,12 @@ impl Section {
                 next += 1;
             }
             let line = self.line_outside(first..next);
+            let ball = tip.as_ref().filter(|tip| next <= tip.slab_count).map(|tip| tip.ball);
             if line.is_some() {
-                chains.push(Chain { slabs: first..next, line });
+                chains.push(Chain { slabs: first..next, line, ball });
             } else {
-                chains
-                    .extend((first..next).map(|slab| Chain { slabs: slab..slab + 1, line: None }));
+                let single = |slab| Chain { slabs: slab..slab + 1, line: None, ball };
+                chains.extend((first..next).map(single));
             }
         }
         chains
@@ -104,7 +106,7 @@ impl Section {
             .vertices(slabs.clone())
             .max_by(|one, other| along_outward(*one).total_cmp(&along_outward(*other)))?;
         // The ends of the chord are the farthest from the line.
-        if along_outward(touch) - along_outward(start) > MAX_GAP * self.size {
+        if along_outward(touch) - along_outward(start) > MAX_GAP * self.outline.size {
             return None;
         }
         let line = Feature { ends: [touch; 2], along, length: 0.0, circle: None, ..from };
@@ -117,7 +119,7 @@ impl Section {
     }
 
     /// Returns the ball about the most of the tool's lowest slabs whose sides are chords of it.
-    pub(super) fn find_tip_ball(&self) -> Option<TipBall> {
+    fn tip_ball(&self) -> Option<TipBall> {
         let first = self.slabs.first()?;
         let side = self.side(first);
         let tip = side.ends[0];
@@ -135,14 +137,9 @@ impl Section {
                 [least.min(distance), greatest.max(distance)]
             });
             let is_close = greatest - least <= MAX_DEVIATION * radius;
-            let is_small = greatest.max(centre.abs()) <= 4.0 * self.size;
+            let is_small = greatest.max(centre.abs()) <= 4.0 * self.outline.size;
             (height <= radius && is_close && is_small)
                 .then_some(TipBall { slab_count, ball: [centre, greatest] })
         })
-    }
-
-    /// Returns the ball about the tool's tip that bounds the depth of a chain, as its height and its radius.
-    pub(crate) fn tip_ball_of(&self, chain: &Chain) -> Option<[f64; 2]> {
-        self.tip_ball.filter(|tip| chain.slabs.end <= tip.slab_count).map(|tip| tip.ball)
     }
 }

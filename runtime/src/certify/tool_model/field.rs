@@ -515,8 +515,8 @@ struct Way {
 pub(crate) struct FieldCore {
     /// A point of a piece, or the middle of a box that may have pieces. For a tool with an axis it stands for a circle.
     pub(crate) point: Point,
-    /// 0 for a point of a piece, else the radius of a ball about the box.
-    pub(crate) radius: f64,
+    /// `None` for a point of a piece, else the radius of a ball about the box.
+    pub(crate) radius: Option<f64>,
     pub(crate) region: usize,
 }
 
@@ -574,7 +574,7 @@ impl Field<'_> {
         // The largest boxes come first.
         while let Some(first) = full.first().copied() {
             let region = self.depth(&mut scratch, first.middle()).feature;
-            cores.push(FieldCore { point: first.middle(), radius: 0.0, region });
+            cores.push(FieldCore { point: first.middle(), radius: None, region });
             let mut joined = vec![first];
             while let Some(cell) = joined.pop() {
                 let (near, rest) = full.into_iter().partition(|other| other.meets(&cell));
@@ -586,7 +586,11 @@ impl Field<'_> {
         let mut deepest: Vec<Option<(f64, Point)>> = vec![None; limits.len()];
         for cell in &open {
             let Depth { value, feature, .. } = self.depth(&mut scratch, cell.middle());
-            cores.push(FieldCore { point: cell.middle(), radius: cell.reach(), region: feature });
+            cores.push(FieldCore {
+                point: cell.middle(),
+                radius: Some(cell.reach()),
+                region: feature,
+            });
             let excess = value - limits[feature] - tolerance - self.error;
             if value >= 0.0 && excess > deepest[feature].map_or(0.0, |(excess, _)| excess) {
                 deepest[feature] = Some((excess, cell.middle()));
@@ -594,7 +598,7 @@ impl Field<'_> {
         }
         let found = deepest.into_iter().enumerate();
         cores.extend(found.filter_map(|(region, deepest)| {
-            deepest.map(|(_, point)| FieldCore { point, radius: 0.0, region })
+            deepest.map(|(_, point)| FieldCore { point, radius: None, region })
         }));
         Some(cores)
     }

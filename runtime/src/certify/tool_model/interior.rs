@@ -49,15 +49,15 @@ struct Interior<'a> {
 /// `tolerance` plus the error bound. A piece may have several points if they are not shown to be connected.
 pub(crate) fn witnesses(section: &Section, limits: &[f64], tolerance: f64) -> Vec<CorePoint> {
     let interior = Interior { section, limits };
-    let tolerance_and_error = tolerance + section.error;
+    let tolerance_and_error = tolerance + section.outline.error;
     let mut found = Vec::new();
-    for (index, feature) in section.features.iter().enumerate() {
+    for (index, feature) in section.outline.features.iter().enumerate() {
         let limit = limits[index] + tolerance_and_error;
         interior.add(&Normals::of(feature), limit, index, &mut found);
         for fan in [0, 1].into_iter().filter_map(|end| Normals::axis_fan(feature, end)) {
             interior.add(&fan, limit, index, &mut found);
         }
-        let Some(next) = section.features.get(index + 1) else { continue };
+        let Some(next) = section.outline.features.get(index + 1) else { continue };
         // Points of a fan are equally near to both features, and so belong to the stricter.
         let owner = if limits[index + 1] < limits[index] { index + 1 } else { index };
         if let Some(fan) = Normals::fan(feature, next) {
@@ -76,7 +76,7 @@ impl Interior<'_> {
         // Between neighbouring cuts nothing comes nearer or moves away, so a middle decides for its span.
         let mut cuts = vec![0.0, normals.end()];
         normals.crossings(limit, AXIS, &mut cuts);
-        for other in &self.section.features {
+        for other in &self.section.outline.features {
             levels(other, limit).for_each(|level| normals.crossings(limit, level, &mut cuts));
         }
         cuts.sort_by(f64::total_cmp);
@@ -110,14 +110,15 @@ impl Interior<'_> {
     /// Returns whether nothing of the profile is nearer to a point than its foot, `t` away, by more than rounding.
     fn is_free(&self, p: MeridianPoint, t: f64) -> bool {
         p[0] >= 0.0
-            && self.section.unsigned_distance(p) >= t - rounding::FRACTION * self.section.error
+            && self.section.unsigned_distance(p)
+                >= t - rounding::FRACTION * self.section.outline.error
     }
 
     /// Returns the length of a normal, at least `least`: the distance at which another point of the profile is as
     /// near as its foot, or at which it reaches the axis.
     fn length(&self, normals: &Normals, s: f64, least: f64) -> f64 {
         // No normal inside the tool is longer than its diameter.
-        let [mut low, mut high] = [least, normals.longest().min(2.0 * self.section.size)];
+        let [mut low, mut high] = [least, normals.longest().min(2.0 * self.section.outline.size)];
         for _ in 0..MAX_HALVINGS {
             let middle = f64::midpoint(low, high);
             if self.is_free(normals.point(s, middle), middle) {
@@ -137,7 +138,7 @@ impl Interior<'_> {
     /// `d - l`, or as half the amount by which the features of that limit are farther away than `d`.
     fn margin(&self, p: MeridianPoint, tolerance_and_error: f64) -> f64 {
         let depth = self.section.signed(p);
-        let features = self.section.features.iter().zip(self.limits);
+        let features = self.section.outline.features.iter().zip(self.limits);
         features
             .map(|(feature, limit)| {
                 (depth - limit - tolerance_and_error).max(0.5 * (feature.distance(p) - depth))
@@ -156,7 +157,7 @@ impl Interior<'_> {
             }
             let p = [0, 1].map(|k| from[k] + displacement[k] * (at / length));
             let margin = self.margin(p, tolerance_and_error);
-            if margin <= self.section.error {
+            if margin <= self.section.outline.error {
                 return false;
             }
             // Everything within the margin is in the interior, so the next step may begin there.
@@ -455,11 +456,11 @@ mod tests {
                 .find(|(known, _)| *known == name)
                 .map_or(f64::INFINITY, |(_, limit)| *limit)
         };
-        let limits: Vec<f64> = section.features.iter().map(limit).collect();
+        let limits: Vec<f64> = section.outline.features.iter().map(limit).collect();
         let found = witnesses(&section, &limits, 1e-9);
         for witness in &found {
             assert!(section.signed(witness.point) > limits[witness.feature], "{witness:?}");
-            let own = section.features[witness.feature].distance(witness.point);
+            let own = section.outline.features[witness.feature].distance(witness.point);
             assert!((own - section.signed(witness.point)).abs() < 1e-12, "{witness:?}");
         }
         found
@@ -508,7 +509,7 @@ mod tests {
         ]);
         for section in [disc, groove] {
             for limit in [0.0, 0.1] {
-                let found = witnesses(&section, &vec![limit; section.features.len()], 1e-9);
+                let found = witnesses(&section, &vec![limit; section.outline.features.len()], 1e-9);
                 assert!(!found.is_empty());
                 for witness in found {
                     assert!(section.signed(witness.point) > limit, "{witness:?}");

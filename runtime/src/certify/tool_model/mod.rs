@@ -5,16 +5,20 @@ pub(crate) mod chains;
 pub(crate) mod feature;
 pub(crate) mod field;
 pub(crate) mod interior;
+pub(crate) mod outline;
 pub(crate) mod owners;
-mod peaks;
+pub(crate) mod peaks;
+pub(crate) mod profile;
 pub(crate) mod rectangle;
 pub(crate) mod section;
+pub(crate) mod slab;
 
 use crate::certify::space::Point;
 use crate::certify::tool_model::feature::MeridianPoint;
 use crate::certify::tool_model::field::{Field, Scratch};
 use crate::certify::tool_model::owners::Owners;
-use crate::certify::tool_model::section::{Depth, Section};
+use crate::certify::tool_model::profile::ProfileModel;
+use crate::certify::tool_model::section::Depth;
 use crate::handle::ToolHandle;
 use crate::id::SurfaceId;
 use fearless_simd::Level;
@@ -31,7 +35,7 @@ pub(crate) struct Surroundings {
 #[derive(Clone)]
 pub(crate) enum ToolModel<'a> {
     /// Depth is the distance from the tool's profile.
-    Profile(Section),
+    Profile(ProfileModel),
     /// Depth is the function in the tool's file.
     Field(Field<'a>),
 }
@@ -43,8 +47,7 @@ impl<'a> ToolModel<'a> {
         if tool.info().outline.is_empty() {
             return Some(ToolModel::Field(Field::new(tool.clone(), level, error)?));
         }
-        let section = Section::new(tool.info(), error)?;
-        Some(ToolModel::Profile(section.with_circles()))
+        ProfileModel::new(tool.info(), error).map(ToolModel::Profile)
     }
 
     /// Returns the error bound of a depth, given that of a point.
@@ -66,7 +69,9 @@ impl<'a> ToolModel<'a> {
     /// Returns the surface of a feature.
     pub(crate) fn surface(&self, feature: usize) -> SurfaceId {
         match self {
-            ToolModel::Profile(section) => SurfaceId(section.features[feature].surface),
+            ToolModel::Profile(profile) => {
+                SurfaceId(profile.section.outline.features[feature].surface)
+            }
             ToolModel::Field(field) => field.info().regions[feature].surface,
         }
     }
@@ -80,7 +85,7 @@ impl<'a> ToolModel<'a> {
         point: Point,
     ) -> Option<Depth> {
         match self {
-            ToolModel::Profile(section) => section.depth_at(owners, meridian_point(point)),
+            ToolModel::Profile(profile) => profile.section.depth_at(owners, meridian_point(point)),
             ToolModel::Field(field) => {
                 Some(field.depth_of(scratch, owners, point)).filter(|depth| depth.value >= 0.0)
             }
@@ -91,7 +96,7 @@ impl<'a> ToolModel<'a> {
     /// lower bound of the distance of the whole tool, and points inside count as infinitely far.
     pub(crate) fn distance(&self, scratch: &mut Scratch, owners: &Owners, point: Point) -> Depth {
         match self {
-            ToolModel::Profile(section) => section.distance(owners, meridian_point(point)),
+            ToolModel::Profile(profile) => profile.section.distance(owners, meridian_point(point)),
             ToolModel::Field(field) => {
                 let depth = field.depth(scratch, point);
                 let value = if depth.value < 0.0 { depth.value } else { f64::NEG_INFINITY };
@@ -112,11 +117,12 @@ impl<'a> ToolModel<'a> {
         let Surroundings { centre: point, displacement, rectangle } = *points;
         let steep = self.lipschitz();
         let depth = match self {
-            ToolModel::Profile(section) if limit < 0.0 => {
-                return section.distance(owners, meridian_point(point)).value + displacement
+            ToolModel::Profile(profile) if limit < 0.0 => {
+                return profile.section.distance(owners, meridian_point(point)).value
+                    + displacement
                     < limit;
             }
-            ToolModel::Profile(section) => section.signed(meridian_point(point)),
+            ToolModel::Profile(profile) => profile.section.signed(meridian_point(point)),
             ToolModel::Field(field) => field.depth(scratch, point).value,
         };
         // Outside, depth is the negative of a distance, whose Lipschitz constant is 1.
@@ -124,8 +130,9 @@ impl<'a> ToolModel<'a> {
             return true;
         }
         match self {
-            ToolModel::Profile(section) => {
-                section.far_from(owners, &rectangle, meridian_point(point), depth, displacement)
+            ToolModel::Profile(profile) => {
+                let (outline, p) = (&profile.section.outline, meridian_point(point));
+                owners.are_far_from(outline, &rectangle, p, depth, displacement)
             }
             ToolModel::Field(field) => field.passes(scratch, owners, point, displacement, limit),
         }

@@ -2,10 +2,14 @@
 
 use crate::certify::rounding;
 use crate::certify::tool_model::cells::Cell;
+use crate::certify::tool_model::feature::{Feature, MeridianPoint, mean};
+use crate::certify::tool_model::outline::Outline;
 use crate::certify::tool_model::peaks::Peaks;
 use crate::certify::tool_model::rectangle::Rectangle;
-use crate::certify::tool_model::section::{Section, SectionSlab};
+use crate::certify::tool_model::section::Section;
+use crate::certify::tool_model::slab::SectionSlab;
 use crate::tool::{Region, ToolInfo, bit};
+use std::cell::LazyCell;
 use std::collections::BinaryHeap;
 
 /// The features to which a query is restricted, by their indices in the section's list. A feature *owns* the points to
@@ -45,13 +49,13 @@ impl Owners {
     /// Returns the features of some surfaces.
     pub(crate) fn of(section: &Section, surfaces: impl Fn(usize) -> bool) -> Owners {
         let owned_features: Vec<bool> =
-            section.features.iter().map(|f| surfaces(f.surface)).collect();
+            section.outline.features.iter().map(|f| surfaces(f.surface)).collect();
         let owned_features = owned_features.contains(&false).then_some(owned_features);
         let mut owners = Owners { owned_features, ..Owners::default() };
         if !owners.all() {
             let Peaks { heights, unresolved } = owners.find_peaks(section, true);
             // Just below and just above: at a seam each side owns only points on its side.
-            let beside = rounding::FRACTION * section.error;
+            let beside = rounding::FRACTION * section.outline.error;
             owners.peaks = heights.iter().flat_map(|peak| [peak - beside, peak + beside]).collect();
             owners.unresolved = unresolved;
         }
@@ -63,8 +67,9 @@ impl Owners {
     /// ends.
     pub(crate) fn near(section: &Section, surfaces: impl Fn(usize) -> bool) -> Owners {
         let owned_features: Vec<bool> =
-            section.features.iter().map(|f| surfaces(f.surface)).collect();
-        let owned = section.features.iter().zip(&owned_features).filter(|(_, owned)| **owned);
+            section.outline.features.iter().map(|f| surfaces(f.surface)).collect();
+        let owned =
+            section.outline.features.iter().zip(&owned_features).filter(|(_, owned)| **owned);
         let peaks = owned.flat_map(|(feature, _)| feature.ends.map(|end| end[1])).collect();
         Owners { owned_features: Some(owned_features), peaks, ..Owners::default() }
     }
@@ -98,13 +103,13 @@ impl Owners {
     /// Computes the zone of a slab. Cells of it are halved until all candidates are owners or none is, or until the cell is too
     /// small to matter.
     fn zone(&self, section: &Section, slab: &SectionSlab, deeper: f64) -> Option<Rectangle> {
-        let min_size = section.size / f64::from(ZONE_DIVISIONS);
-        let strip = rounding::FRACTION * section.error.min(slab.high - slab.low);
+        let min_size = section.outline.size / f64::from(ZONE_DIVISIONS);
+        let strip = rounding::FRACTION * section.outline.error.min(slab.high - slab.low);
         let mut zone: Option<Rectangle> = None;
         let widen = |zone: &mut Option<Rectangle>, rectangle: Rectangle| {
             *zone = Some(zone.map_or(rectangle, |zone| zone.widened(&rectangle)));
         };
-        let margin = section.owner_margin();
+        let margin = section.outline.owner_margin();
         let mut stack = section.cells_of(slab);
         while let Some(cell) = stack.pop() {
             let rectangle = cell.rectangle;
@@ -118,7 +123,8 @@ impl Owners {
             // The height of a seam at which features of equal direction meet is the border between their points, and only
             // a strip along it is not certain to belong to one of them.
             let (inner, strips) = rectangle.without_seams([slab.low, slab.high], strip);
-            let part = |rectangle: Rectangle| section.cell(rectangle, &cell.candidates, margin);
+            let part =
+                |rectangle: Rectangle| section.outline.cell(rectangle, &cell.candidates, margin);
             let is_owned = |cell: &Cell| self.ownership(section, cell, deeper) != Ownership::None;
             if !strips.is_empty() && !is_owned(&part(inner)) {
                 for strip in strips {
@@ -129,7 +135,7 @@ impl Owners {
             } else if ownership == Ownership::All || rectangle.ball().1 <= min_size {
                 widen(&mut zone, rectangle);
             } else {
-                stack.extend(section.halves(&cell, margin));
+                stack.extend(section.outline.halves(&cell, margin));
             }
         }
         zone
@@ -140,7 +146,7 @@ impl Owners {
         let (middle, reach) = cell.rectangle.ball();
         let candidates = cell.candidates.iter().copied();
         // Depth has the Lipschitz constant 1.
-        let (depth, _) = section.nearest(candidates.clone(), middle);
+        let (depth, _) = section.outline.nearest(candidates.clone(), middle);
         let mut owned = candidates.map(|candidate| self.is_owned(candidate));
         if depth + reach <= deeper || !owned.clone().any(|is_owned| is_owned) {
             Ownership::None
@@ -167,11 +173,11 @@ impl Owners {
             for cell in halves.drain(..) {
                 let (middle, reach) = cell.rectangle.ball();
                 let candidates = cell.candidates.iter().copied();
-                let (depth, _) = section.nearest(candidates.clone(), middle);
+                let (depth, _) = section.outline.nearest(candidates.clone(), middle);
                 let owned = candidates.filter(|candidate| self.is_owned(*candidate));
-                let (owner, _) = section.nearest(owned, middle);
+                let (owner, _) = section.outline.nearest(owned, middle);
                 let is_inside = section.contains(middle);
-                if is_inside && owner <= depth + section.error {
+                if is_inside && owner <= depth + section.outline.error {
                     max_depth = depth.max(max_depth);
                 }
                 if owner.is_finite() && (is_inside || depth <= reach) {
@@ -182,13 +188,63 @@ impl Owners {
             }
             let Some((bits, index)) = queue.pop() else { return max_depth };
             bound = f64::from_bits(bits);
-            if bound <= 1.01 * max_depth + section.error {
+            if bound <= 1.01 * max_depth + section.outline.error {
                 break;
             }
-            halves.extend(section.halves(&cells[index], section.owner_margin()));
+            halves.extend(section.outline.halves(&cells[index], section.outline.owner_margin()));
         }
         // The cell divided last had the largest bound, which holds for its halves too.
-        bound + section.error
+        bound + section.outline.error
+    }
+
+    /// Returns the features that are owners.
+    pub(super) fn owned(&self, outline: &Outline) -> impl Iterator<Item = usize> {
+        (0..outline.features.len()).filter(|feature| self.is_owned(*feature))
+    }
+
+    /// Returns whether they own no point of a rectangle within `displacement` of a point with this depth.
+    pub(super) fn are_far_from(
+        &self,
+        outline: &Outline,
+        rectangle: &[MeridianPoint; 4],
+        p: MeridianPoint,
+        depth: f64,
+        displacement: f64,
+    ) -> bool {
+        !self.all()
+            && self.own_nothing(outline, rectangle, outline.owner_margin(), |owner| {
+                outline.features[owner].distance(p) > depth + 2.0 * displacement
+            })
+    }
+
+    /// Returns whether all owners are farther away than the distance up to which a point outside counts as touching.
+    pub(super) fn are_apart(&self, outline: &Outline, distance: impl Fn(&Feature) -> f64) -> bool {
+        !self.all()
+            && self
+                .owned(outline)
+                .all(|owner| distance(&outline.features[owner]) > outline.contact_tolerance())
+    }
+
+    /// Returns whether they own no point of a polygon: each is known to be far away, or its neighbours are nearer to all
+    /// points, or a feature that is no owner is, by more than a margin.
+    #[inline]
+    pub(super) fn own_nothing<const N: usize>(
+        &self,
+        outline: &Outline,
+        corners: &[MeridianPoint; N],
+        margin: f64,
+        is_far: impl Fn(usize) -> bool,
+    ) -> bool {
+        // Computed once: it is the same for all owners, and few polygons need it.
+        let nearest_other = LazyCell::new(|| {
+            let others = (0..outline.features.len()).filter(|feature| !self.is_owned(*feature));
+            &outline.features[outline.nearest(others, mean(corners)).1]
+        });
+        self.owned(outline).all(|owner| {
+            is_far(owner)
+                || outline.hidden_by_neighbours(owner, corners)
+                || outline.features[owner].is_farther(&nearest_other, corners, margin)
+        })
     }
 }
 
@@ -251,7 +307,7 @@ mod tests {
     #[test]
     fn every_point_that_a_surface_owns_lies_in_a_zone() {
         for info in [HELD.info(), WAISTED.info()] {
-            let section = Section::new(info, ERROR).map(Section::with_circles);
+            let section = Section::new(info, ERROR);
             let section = section.expect("a profile");
             for surface in 0..info.surfaces.len() {
                 for deeper in [0.0, 0.5, 2.0] {
@@ -266,9 +322,10 @@ mod tests {
                             slab.low + fraction(0.754_877_666_2) * (slab.high - slab.low),
                         ];
                         // The nearest feature by the distances of all, which the zones are not computed from.
-                        let distances = section.features.iter().map(|feature| feature.distance(p));
+                        let distances =
+                            section.outline.features.iter().map(|feature| feature.distance(p));
                         let nearest = distances.clone().fold(f64::INFINITY, f64::min);
-                        let mut nearby = section.features.iter().zip(distances);
+                        let mut nearby = section.outline.features.iter().zip(distances);
                         let owns = nearby.any(|(f, d)| d == nearest && f.surface == surface);
                         if !owns || !section.contains(p) || nearest <= deeper {
                             continue;

@@ -21,9 +21,10 @@ use crate::certify::tool_model::section::Section;
 use crate::tool::Circle;
 
 /// The heights at which depth can have a local maximum, and rectangles in which there may be more of them.
-pub(super) struct Peaks {
-    pub(super) heights: Vec<f64>,
-    pub(super) unresolved: Vec<Rectangle>,
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Peaks {
+    pub(crate) heights: Vec<f64>,
+    pub(crate) unresolved: Vec<Rectangle>,
 }
 
 /// The maximum number of cells examined for peaks. What is left of them is a part of the answer.
@@ -39,9 +40,9 @@ impl Owners {
     /// meet nearly in line are equally far to within a fraction of the error bound all over some cells. There they count
     /// as one, and the end of their border is [computed](Section::border_ends) by itself.
     pub(super) fn find_peaks(&self, section: &Section, others: bool) -> Peaks {
-        let min_size = rounding::PEAK_CELL * section.error;
+        let min_size = rounding::PEAK_CELL * section.outline.error;
         // All points of an arc are equally far from its centre.
-        let centres = section.features.iter().filter_map(|feature| feature.circle);
+        let centres = section.outline.features.iter().filter_map(|feature| feature.circle);
         let mut peaks: Vec<f64> = centres.map(|circle| circle.centre[1]).collect();
         peaks.extend(section.border_ends());
         let mut cells: Vec<Cell> =
@@ -58,7 +59,9 @@ impl Owners {
                 }
                 let (middle, reach) = cell.rectangle.ball();
                 if reach > min_size {
-                    cells.extend(section.halves(&cell, rounding::PEAK_TIE * section.error));
+                    cells.extend(
+                        section.outline.halves(&cell, rounding::PEAK_TIE * section.outline.error),
+                    );
                 } else if peaks.iter().all(|peak| (peak - middle[1]).abs() > 2.0 * min_size) {
                     // Neighbouring cells at one point count once.
                     peaks.push(middle[1]);
@@ -77,26 +80,27 @@ impl Owners {
         }
         let (middle, reach) = cell.rectangle.ball();
         let corners = cell.rectangle.corners();
-        let feature = |index: usize| &section.features[index];
+        let feature = |index: usize| &section.outline.features[index];
         let mut sites: Vec<usize> = Vec::new();
         for index in &cell.candidates {
             let foot = feature(*index).foot(middle);
             let is_known = sites.iter().any(|site| {
                 // Both sides of a reflex corner are equally far from a point nearest to that corner. Elsewhere one of
                 // two adjacent features is nearer on either side of a line. Shared ends are identical to the bit.
-                let same_foot = norm(minus(feature(*site).foot(middle), foot)) <= section.error;
+                let same_foot =
+                    norm(minus(feature(*site).foot(middle), foot)) <= section.outline.error;
                 let same_kind = self.is_owned(*index) == self.is_owned(*site);
                 let both_end =
                     || [*index, *site].map(|f| feature(f).at_ends(&corners).is_some()) == [true; 2];
                 let is_in_line = || {
                     let (first, second) = (index.min(site), index.max(site));
-                    reach >= rounding::MERGED_CELL * section.error
+                    reach >= rounding::MERGED_CELL * section.outline.error
                         && first + 1 == *second
                         && feature(*first).continues_in(feature(*second))
                         && feature(*first).is_as_far_as(
                             feature(*second),
                             &corners,
-                            rounding::FRACTION * section.error,
+                            rounding::FRACTION * section.outline.error,
                         )
                 };
                 (same_foot && (same_kind || both_end())) || is_in_line()
@@ -113,22 +117,22 @@ impl Owners {
 }
 
 impl Section {
-    /// Computes the heights of circles about the axis on which depth can be greatest, where the profile overhangs.
-    pub(super) fn with_circles(mut self) -> Section {
-        if self.overhangs {
-            let Peaks { mut heights, unresolved } = Owners::default().find_peaks(&self, false);
-            heights.extend(
-                normal_pairs(&self.features)
-                    .into_iter()
-                    .map(|[a, b]| ([0, 1].map(|k| f64::midpoint(a[k], b[k])), norm(minus(a, b))))
-                    .filter(|(middle, distance)| self.is_critical(*middle, 0.5 * distance))
-                    .map(|(middle, _)| middle[1]),
-            );
-            heights.sort_by(f64::total_cmp);
-            heights.dedup_by(|upper, lower| *upper - *lower <= rounding::FRACTION * self.error);
-            (self.circles, self.unresolved) = (heights, unresolved);
+    /// Returns the heights of circles about the axis on which depth can be greatest in a triangle, where the profile overhangs.
+    pub(super) fn circles(&self) -> Peaks {
+        if !self.overhangs {
+            return Peaks::default();
         }
-        self
+        let Peaks { mut heights, unresolved } = Owners::default().find_peaks(self, false);
+        heights.extend(
+            normal_pairs(&self.outline.features)
+                .into_iter()
+                .map(|[a, b]| ([0, 1].map(|k| f64::midpoint(a[k], b[k])), norm(minus(a, b))))
+                .filter(|(middle, distance)| self.is_critical(*middle, 0.5 * distance))
+                .map(|(middle, _)| middle[1]),
+        );
+        heights.sort_by(f64::total_cmp);
+        heights.dedup_by(|upper, lower| *upper - *lower <= rounding::FRACTION * self.outline.error);
+        Peaks { heights, unresolved }
     }
 
     /// Returns the heights of the ends of borders between features that meet nearly in line: where another feature is as near.
@@ -138,20 +142,22 @@ impl Section {
     /// so that halving finds the end.
     fn border_ends(&self) -> Vec<f64> {
         let mut heights = Vec::new();
-        for (index, pair) in self.features.windows(2).enumerate() {
+        for (index, pair) in self.outline.features.windows(2).enumerate() {
             if !pair[0].continues_in(&pair[1]) {
                 continue;
             }
             let border = Border::new(self, &pair[0], &pair[1]);
-            let others = || (0..self.features.len()).filter(|k| *k != index && *k != index + 1);
+            let others =
+                || (0..self.outline.features.len()).filter(|k| *k != index && *k != index + 1);
             for course in [Course::FirstNormal, Course::SecondNormal, Course::Between] {
                 let is_other_nearer = |t: f64| {
                     let p = border.point(course, t);
-                    self.nearest(others(), p).0 <= pair[0].distance(p).min(pair[1].distance(p))
+                    self.outline.nearest(others(), p).0
+                        <= pair[0].distance(p).min(pair[1].distance(p))
                 };
                 let (from, away) = (border.from[0], border.max_away(course));
                 let to_axis = if away < 0.0 { from / -away } else { f64::INFINITY };
-                let end = to_axis.min(2.0 * self.size);
+                let end = to_axis.min(2.0 * self.outline.size);
                 // Otherwise the border ends at the axis.
                 if is_other_nearer(end) {
                     let end = bisect([0.0, end], is_other_nearer);
@@ -165,8 +171,8 @@ impl Section {
     /// Returns whether a point midway between two points of the profile, `half` away from both, is inside and has no
     /// nearer point of the profile.
     fn is_critical(&self, middle: MeridianPoint, half: f64) -> bool {
-        let is_nearest = (self.unsigned_distance(middle) - half).abs() <= self.error;
-        middle[0] > 0.0 && half > self.error && is_nearest && self.contains(middle)
+        let is_nearest = (self.unsigned_distance(middle) - half).abs() <= self.outline.error;
+        middle[0] > 0.0 && half > self.outline.error && is_nearest && self.contains(middle)
     }
 }
 
@@ -196,10 +202,11 @@ impl Border<'_> {
             [-z / length, d / length]
         });
         // Beside an arc that bulges the border ends at its centre at the latest, beside another one anywhere.
-        let reach = |circle: Circle| if circle.convex { circle.radius } else { 2.0 * section.size };
+        let reach =
+            |circle: Circle| if circle.convex { circle.radius } else { 2.0 * section.outline.size };
         let reaches = [first, second].into_iter().filter_map(|feature| feature.circle.map(reach));
         let stray = norm(minus(normals[0], normals[1])) * reaches.fold(0.0, f64::max);
-        let is_curved = stray > rounding::FRACTION * section.error;
+        let is_curved = stray > rounding::FRACTION * section.outline.error;
         Border { features: [first, second], from: second.ends[0], normals, is_curved }
     }
 

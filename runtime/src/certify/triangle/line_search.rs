@@ -293,7 +293,7 @@ impl DepthSearch {
             let [low, high] = half.map(|t| line.height(t));
             for slab in section.slabs_from(low.min(high)) {
                 // Wider by the error, so that no point falls between two slabs.
-                let heights = [slab.low - section.error, slab.high + section.error];
+                let heights = [slab.low - section.outline.error, slab.high + section.outline.error];
                 if heights[0] > low.max(high) {
                     break;
                 }

@@ -12,8 +12,8 @@ pub(crate) mod line_search;
 use crate::certify::rounding;
 use crate::certify::space::{Point, cross, dot, minus, norm};
 use crate::certify::tool_model::owners::Owners;
+use crate::certify::tool_model::profile::ProfileModel;
 use crate::certify::tool_model::rectangle::Rectangle;
-use crate::certify::tool_model::section::Section;
 use crate::certify::triangle::line_search::{DepthSearch, SearchLine};
 
 /// A triangle in the tool's frame and unit.
@@ -225,20 +225,20 @@ impl SubTriangle {
     /// Leaves its depth open in a search if a rectangle of unresolved peaks is within a distance of it.
     pub(crate) fn leave_unresolved(
         &self,
-        section: &Section,
+        ProfileModel { section, circles, .. }: &ProfileModel,
         owners: &Owners,
         distance: f64,
         search: &mut DepthSearch,
     ) {
         // Hardly any profile has some.
-        if section.unresolved.is_empty() && owners.unresolved.is_empty() {
+        if circles.unresolved.is_empty() && owners.unresolved.is_empty() {
             return;
         }
         let rectangle = self.rectangle(distance);
-        let unresolved = section.unresolved.iter().chain(&owners.unresolved);
+        let unresolved = circles.unresolved.iter().chain(&owners.unresolved);
         for near in unresolved.filter(|unresolved| unresolved.meets(&rectangle)) {
             let (middle, reach) = near.ball();
-            let bound = section.signed(middle) + reach + section.error;
+            let bound = section.signed(middle) + reach + section.outline.error;
             if bound > search.threshold() {
                 search.leave(bound);
             }

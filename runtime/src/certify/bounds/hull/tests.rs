@@ -5,7 +5,6 @@ use crate::bvh::QuerySetup;
 use crate::certify::bounds::descent::{BoundedTree, Node, of_children};
 use crate::certify::part::TriangleBvh;
 use crate::certify::space::Point;
-use crate::certify::tool_model::chains::TipBall;
 use crate::mesh::Mesh;
 use crate::pose::Pose;
 use crate::tool::Interpreted;
@@ -111,12 +110,22 @@ fn tools() -> [&'static ToolInfo; 5] {
     [NECKED.info(), WAISTED.info(), ROUNDED.info(), HOLLOW.info(), CHORDED.info()]
 }
 
+/// Returns the model of a tool, and zones that hold all of it.
+fn whole(info: &ToolInfo) -> (ProfileModel, Vec<Option<Rectangle>>) {
+    let profile = ProfileModel::new(info, ERROR).expect("a profile");
+    let zones = profile.section.slabs.iter().map(|slab| Some(slab.rectangle())).collect();
+    (profile, zones)
+}
+
 #[test]
 fn chords_of_a_ball_are_bounded_by_it_and_those_of_a_shoulder_together() {
-    let section = Section::new(CHORDED.info(), ERROR).expect("a profile");
-    let TipBall { slab_count: slabs, ball: [centre, radius] } = section.tip_ball.expect("a ball");
+    let ProfileModel { section, chains, .. } =
+        ProfileModel::new(CHORDED.info(), ERROR).expect("a profile");
+    let in_ball =
+        chains.iter().filter_map(|chain| Some((chain.slabs.end, chain.ball?))).next_back();
+    let (slabs, [centre, radius]) = in_ball.expect("a ball");
     assert!(slabs == 48 && (centre - 3.0).abs() < 1e-5 && (radius - 3.0).abs() < 1e-5);
-    let chains = section.chains.iter().map(|chain| chain.slabs.clone());
+    let chains = chains.iter().map(|chain| chain.slabs.clone());
     assert!(chains.clone().flatten().eq(0..section.slabs.len()));
     // Below the flattest of them the tool continues.
     let shoulder = chains.filter(|slabs| slabs.start > 48 && slabs.len() > 1);
@@ -168,12 +177,11 @@ fn no_sampled_point_of_a_triangle_is_deeper_than_its_bounds() {
     let mut numbers = Numbers(1);
     let (mut inside, mut refined) = (0, 0);
     for info in tools() {
-        let section = Section::new(info, ERROR).expect("a profile");
-        let zones: Vec<_> = section.slabs.iter().map(|slab| Some(slab.rectangle())).collect();
-        let hull = Hull::<f64>::new(&section, &zones, ERROR);
+        let (profile, zones) = whole(info);
+        let hull = Hull::<f64>::new(&profile, &zones, ERROR);
         for _ in 0..3000 {
-            let triangle = numbers.triangle(&section);
-            let deepest = sampled(&section, &triangle);
+            let triangle = numbers.triangle(&profile.section);
+            let deepest = sampled(&profile.section, &triangle);
             let [first, second] =
                 dispatch!(Level::new(), simd => both_bounds(simd, &hull, &triangle));
             assert!(deepest <= first + 1e-9, "{}: {triangle:?} {deepest} {first}", info.name);
@@ -195,9 +203,8 @@ fn both_bounds<S: Simd>(simd: S, hull: &Hull<f64>, triangle: &[Point; 3]) -> [f6
 
 #[test]
 fn a_triangle_that_touches_an_arc_is_not_deep() {
-    let section = Section::new(ROUNDED.info(), ERROR).expect("a profile");
-    let zones: Vec<_> = section.slabs.iter().map(|slab| Some(slab.rectangle())).collect();
-    let hull = Hull::<f64>::new(&section, &zones, ERROR);
+    let (profile, zones) = whole(ROUNDED.info());
+    let hull = Hull::<f64>::new(&profile, &zones, ERROR);
     for (degrees, turn) in [(1, 0.0), (20, 1.0), (45, 2.0), (70, 3.0), (60, -2.0)] {
         // Outward from the centre of the edge: down at 0 degrees. Beyond 70 the shank, which is wider, reaches farther.
         let (sine, cosine) = f64::from(degrees).to_radians().sin_cos();
@@ -219,8 +226,7 @@ fn no_sampled_point_of_a_node_is_deeper_than_its_bound() {
     let mut numbers = Numbers(2);
     let mut inside = 0;
     for info in tools() {
-        let section = Section::new(info, ERROR).expect("a profile");
-        let zones: Vec<_> = section.slabs.iter().map(|slab| Some(slab.rectangle())).collect();
+        let (profile, zones) = whole(info);
         for _ in 0..60 {
             // A strip of triangles that is almost plane, in places flat.
             let [at, across, up] = [(); 3].map(|()| {
@@ -244,7 +250,7 @@ fn no_sampled_point_of_a_node_is_deeper_than_its_bound() {
             let bvh = TriangleBvh::new(&mesh);
             let setup = QuerySetup::new(&bvh.frame, info, 1.0);
             let margin = setup.margin;
-            let hull = Hull::<f32>::new(&section, &zones, margin);
+            let hull = Hull::<f32>::new(&profile, &zones, margin);
             let mut view = PoseTransform::default();
             let pose = Pose::from_axis(Point3::origin(), Vector3::z()).expect("a unit vector");
             if !setup.set_pose(&bvh.frame, &pose, &mut view) {
@@ -259,7 +265,7 @@ fn no_sampled_point_of_a_node_is_deeper_than_its_bound() {
                 let axes = pose.rotation().transpose();
                 let deepest = triangles.iter().map(|corners| {
                     let corners = corners.map(|p| (axes * Vector3::from(p)).into());
-                    sampled(&section, &corners)
+                    sampled(&profile.section, &corners)
                 });
                 let deepest = deepest.fold(f64::NEG_INFINITY, f64::max);
                 let bound = f64::from(bounds[child]) + 4.0 * margin;
@@ -274,9 +280,8 @@ fn no_sampled_point_of_a_node_is_deeper_than_its_bound() {
 /// A triangle that is beside the housing where it is as high, and below it where it is nearer to the axis.
 #[test]
 fn a_triangle_that_passes_below_a_step_is_not_deep() {
-    let section = Section::new(NECKED.info(), ERROR).expect("a profile");
-    let zones: Vec<_> = section.slabs.iter().map(|slab| Some(slab.rectangle())).collect();
-    let hull = Hull::<f64>::new(&section, &zones, ERROR);
+    let (profile, zones) = whole(NECKED.info());
+    let hull = Hull::<f64>::new(&profile, &zones, ERROR);
     let corners = [[3.5, 0.0, 8.9], [8.5, 0.0, 9.2], [8.5, 1.0, 9.2]];
     let [bound, _] = dispatch!(Level::new(), simd => both_bounds(simd, &hull, &corners));
     assert!(bound < 0.0, "{bound}");
