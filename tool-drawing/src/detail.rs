@@ -1,10 +1,11 @@
 //! The detail: the cutting part of a tool at a larger scale, beside the view of the whole tool.
 
+use super::picture::{Part, Picture, meridian_section};
 use super::regions::Marks;
 use super::section::clipped_stroke;
 use super::sheet::{Anchor, DEFAULT_COLOUR, Look, Sheet, lines};
 use super::view::View;
-use super::{Content, Part, Picture, ROUNDING_FRACTION, meridian_section};
+use super::{Content, ROUNDING_FRACTION};
 use touchoff_dsl::CheckedTool;
 use touchoff_dsl::model::Model;
 use touchoff_dsl::vector::Point;

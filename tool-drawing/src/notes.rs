@@ -2,11 +2,12 @@
 //! right. The dimensions are those of the tool's surface.
 
 use super::lettering::width;
+use super::picture::Picture;
 use super::regions::{Arrow, Marks, heads};
 use super::section::{Edge, Section};
 use super::sheet::{Anchor, Look, SECONDARY_COLOUR, Sheet, lines, trimmed};
 use super::stroke::Stroke;
-use super::{Picture, ROUNDING_FRACTION, paint};
+use super::{ROUNDING_FRACTION, paint};
 use touchoff_dsl::model::Unit;
 use touchoff_dsl::vector::{Point, cross, dot, minus, norm};
 

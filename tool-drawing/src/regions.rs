@@ -1,11 +1,12 @@
 //! Draws the section of a tool about its axis; of regions, also names, directions and singular points.
 
 use super::lettering::width;
+use super::picture::{Part, Picture};
 use super::shape::{Frame, Shape};
 use super::sheet::{Anchor, DEFAULT_COLOUR, Look, Sheet, lines};
 use super::stroke::Stroke;
 use super::view::View;
-use super::{Content, Part, Picture, ROUNDING_FRACTION, paint};
+use super::{Content, ROUNDING_FRACTION, paint};
 use touchoff_dsl::expr::value::{EvaluationPoint, Evaluator};
 use touchoff_dsl::model::Model;
 use touchoff_dsl::vector::{Point, cross, minus, norm};

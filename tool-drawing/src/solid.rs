@@ -6,11 +6,12 @@
 use super::curves::Plane;
 use super::legend::{self, Entry, Sign};
 use super::notes::{draw_thin_lines, tidy};
+use super::picture::Picture;
 use super::regions::name;
 use super::section::Section;
 use super::sheet::{Anchor, Look, Sheet, lines};
 use super::view::View;
-use super::{Content, Picture, ROUNDING_FRACTION, paint};
+use super::{Content, ROUNDING_FRACTION, paint};
 use touchoff_dsl::CheckedTool;
 use touchoff_dsl::expr::interval::Interval;
 

@@ -26,7 +26,7 @@ boxes where the proof did not come to an end. Times are those of the proof alone
         let start = Instant::now();
         let proved = Certificate::prove(&tool);
         let milliseconds = 1e3 * start.elapsed().as_secs_f64();
-        let inner = || proved.borders.iter().filter(|border| border.sides.1.is_some());
+        let inner = || proved.borders.iter().filter(|border| border.sides.other.is_some());
         let count = |accept: &dyn Fn(f64) -> bool| {
             inner().filter(|border| accept(border.depth_jump.high)).count()
         };

@@ -293,9 +293,9 @@ impl<'t> RegionRow<'t> {
             niceness_never_rises: facts.niceness_never_rises,
             rounding_error: facts.rounding_error,
             direction_error_degrees: facts.direction_error.map(ends_in_degrees),
-            oblique_degrees: facts.oblique_witness.map(|(angle, _)| angle.to_degrees()),
-            oblique_point: facts.oblique_witness.map(|(_, point)| point),
-            niceness_rises_point: facts.rising_witness.map(|(_, point)| point),
+            oblique_degrees: facts.oblique_witness.map(|certain| certain.value.to_degrees()),
+            oblique_point: facts.oblique_witness.map(|certain| certain.point),
+            niceness_rises_point: facts.rising_witness.map(|certain| certain.point),
             singular_points: facts.singular_cells.iter().map(Cell::middle).collect(),
             turns_on_axis: facts.turns_on_axis,
         }
@@ -308,7 +308,7 @@ impl<'t> BorderRow<'t> {
             between: sides(model, border),
             depth_jump: ends(border.depth_jump),
             magnitude_jump: ends(border.magnitude_jump),
-            jump_point: border.jump_point.map(|(point, _)| point),
+            jump_point: border.jump_point.map(|jump| jump.point),
             turn_degrees: ends_in_degrees(border.direction_angle),
             turn_on_surface_degrees: border.direction_angle_on_surface.map(ends_in_degrees),
             depth: ends(border.depth),
@@ -318,9 +318,9 @@ impl<'t> BorderRow<'t> {
 
 /// Returns the names of the regions on both sides of a border.
 fn sides<'t>(model: &'t Model, border: &Border) -> [&'t str; 2] {
-    let (own, other) = border.sides;
+    let other = border.sides.other;
     let other = other.map_or("outside", |other| model.regions[other].name.as_str());
-    [&model.regions[own].name, other]
+    [&model.regions[border.sides.own].name, other]
 }
 
 fn ends(value: Interval) -> [f64; 2] {

@@ -163,7 +163,7 @@ fn borders(tool: &CheckedTool, certificate: &Certificate) -> Vec<(Border, String
         .filter(|border| {
             border.depth_jump.high > certificate.tolerance || border.has_equal_depths()
         })
-        .filter(|border| border.sides.1.is_some() || !border.has_equal_depths());
+        .filter(|border| border.sides.other.is_some() || !border.has_equal_depths());
     for border in shown {
         match borders.iter_mut().find(|(known, _)| known.sides == border.sides) {
             Some((known, _)) => known.merge(border),

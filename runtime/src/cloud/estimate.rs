@@ -35,9 +35,9 @@ pub(super) fn estimate(
     let distinct = DistinctPoints::of(points, normals);
     let positions = &distinct.positions;
     let tree = NeighbourBvh::new(positions);
-    let lists = parallel::ranges(positions.len(), POINTS_PER_TASK, |range| {
+    let parts = parallel::ranges(positions.len(), POINTS_PER_TASK, |range| {
         let (mut neighbours, mut cell) = (vec![], SideCell::default());
-        let (mut areas, mut max_radius) = (Vec::with_capacity(range.len()), Some(0f64));
+        let mut part = PartEstimate { areas: Vec::with_capacity(range.len()), radius: Some(0.0) };
         for index in range {
             let (position, site) = (positions[index], index as u32);
             let neighbour_count =
@@ -53,24 +53,32 @@ pub(super) fn estimate(
                 cell.cut(&distinct, site, side, &neighbours, spacing);
                 // Coincident points that face the same way share one cell.
                 let sharing = distinct.count_facing(site, side).max(1);
-                areas.push(area(&cell.corners, &side.normal) / sharing as f64);
+                part.areas.push(area(&cell.corners, &side.normal) / sharing as f64);
                 // Near an edge the plane continues where the surface does not.
                 let radius = match distinct.is_near_edge(side, &neighbours, spacing) {
                     true => cell.radius().min(CELL_RADII[1] * spacing),
                     false => cell.radius(),
                 };
                 // A spacing of 0, between coincident points only, says nothing about the rest of the surface.
-                max_radius = max_radius.filter(|_| spacing > 0.0).map(|max| max.max(radius));
+                part.radius = part.radius.filter(|_| spacing > 0.0).map(|max| max.max(radius));
             }
         }
-        (areas, max_radius)
+        part
     });
-    let radius = lists.iter().try_fold(0.0, |max: f64, (_, radius)| Some(max.max((*radius)?)));
+    let radius = parts.iter().try_fold(0.0, |max: f64, part| Some(max.max(part.radius?)));
     let mut areas = vec![0.0; points.len()];
-    for (area, side) in lists.into_iter().flat_map(|(areas, _)| areas).zip(&distinct.sides) {
+    for (area, side) in parts.into_iter().flat_map(|part| part.areas).zip(&distinct.sides) {
         distinct.points[side.points.clone()].iter().for_each(|point| areas[*point as usize] = area);
     }
     (areas, radius)
+}
+
+/// The estimates of some positions.
+struct PartEstimate {
+    /// The area of the cell of each side.
+    areas: Vec<f64>,
+    /// The largest radius of a cell, if it can be estimated.
+    radius: Option<f64>,
 }
 
 /// The distinct positions of points, in the order of the first point of each.
@@ -80,6 +88,15 @@ struct DistinctPoints {
     ends: Vec<usize>,
     sides: Vec<Side>,
     points: Vec<u32>,
+}
+
+/// A point in the order by which coincident ones are found.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct KeyedPoint {
+    /// The bits of its position, and of its normal.
+    position: [u64; 3],
+    normal: [u64; 3],
+    index: u32,
 }
 
 /// The points at a position that have the same normal.
@@ -140,28 +157,28 @@ impl SideCell {
 
 impl DistinctPoints {
     fn of(points: &[Point3<f64>], normals: &[Vector3<f64>]) -> DistinctPoints {
-        let mut keyed: Vec<([u64; 6], u32)> = points
+        let mut keyed: Vec<KeyedPoint> = points
             .iter()
             .zip(normals)
             .zip(0u32..)
-            .map(|((position, normal), index)| {
-                let [[x, y, z], [i, j, k]] =
-                    [(*position).into(), (*normal).into()].map(position_bits);
-                ([x, y, z, i, j, k], index)
+            .map(|((position, normal), index)| KeyedPoint {
+                position: position_bits((*position).into()),
+                normal: position_bits((*normal).into()),
+                index,
             })
             .collect();
         parallel::sort(&mut keyed);
-        let mut groups: Vec<&[([u64; 6], u32)]> =
-            keyed.chunk_by(|a, b| a.0[..3] == b.0[..3]).collect();
-        groups.sort_unstable_by_key(|group| group.iter().map(|(_, index)| *index).min());
+        let mut groups: Vec<&[KeyedPoint]> =
+            keyed.chunk_by(|a, b| a.position == b.position).collect();
+        groups.sort_unstable_by_key(|group| group.iter().map(|point| point.index).min());
         let mut distinct =
             DistinctPoints { positions: vec![], ends: vec![], sides: vec![], points: vec![] };
         for group in groups {
-            distinct.positions.push(points[group[0].1 as usize]);
-            for side in group.chunk_by(|a, b| a.0 == b.0) {
+            distinct.positions.push(points[group[0].index as usize]);
+            for side in group.chunk_by(|a, b| a.normal == b.normal) {
                 let start = distinct.points.len();
-                distinct.points.extend(side.iter().map(|(_, index)| *index));
-                let normal = normals[side[0].1 as usize];
+                distinct.points.extend(side.iter().map(|point| point.index));
+                let normal = normals[side[0].index as usize];
                 distinct.sides.push(Side { normal, points: start..distinct.points.len() });
             }
             distinct.ends.push(distinct.sides.len());

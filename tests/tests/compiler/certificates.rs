@@ -4,7 +4,7 @@
 use touchoff::Level;
 use touchoff::tool::PointEvaluation;
 use touchoff_dsl::interpret::Interpreter;
-use touchoff_dsl::prove::Certificate;
+use touchoff_dsl::prove::{Certificate, Pair};
 use touchoff_dsl::source::Source;
 use touchoff_dsl::{CheckedTool, compile};
 use touchoff_tests::evaluations::evaluate_points;
@@ -36,7 +36,7 @@ fn bounds(proved: &Certificate) -> (f64, f64) {
 /// Returns the turn between two regions in degrees, and the least depth at which they meet.
 fn border(tool: &CheckedTool, proved: &Certificate, names: [&str; 2]) -> ([f64; 2], f64) {
     let region = |name: &str| tool.model.regions.iter().position(|region| region.name == name);
-    let pair = (region(names[0]).expect("a region"), region(names[1]));
+    let pair = Pair { own: region(names[0]).expect("a region"), other: region(names[1]) };
     let mut found = proved.borders.iter().filter(|b| b.sides == pair && b.has_equal_depths());
     let border = found.next().expect("a border");
     assert!(found.next().is_none());

@@ -1,7 +1,8 @@
 //! Borders of regions and of surfaces.
 
 use super::{library, tool, whole};
-use crate::{Picture, paint};
+use crate::paint;
+use crate::picture::Picture;
 use touchoff_dsl::expr::value::{EvaluationPoint, Evaluator};
 
 /// The areas of the regions of the exact fig. 7.3 have closed forms.

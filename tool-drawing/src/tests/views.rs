@@ -2,7 +2,8 @@
 
 use super::{library, tool};
 use crate::detail::{Detail, scale_factor};
-use crate::{Content, Part, Picture, TextRendering, notes, paint, solid, svg};
+use crate::picture::{Part, Picture};
+use crate::{Content, TextRendering, notes, paint, solid, svg};
 use std::f64::consts::PI;
 use touchoff_dsl::CheckedTool;
 

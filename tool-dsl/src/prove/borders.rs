@@ -1,6 +1,7 @@
 //! Separation of two owners of a box: a curve with the owners on its two sides, and whether depth is
 //! continuous across it.
 
+use super::Pair;
 use super::cover::{Claim, Cover, half_diagonal};
 use super::depths::{DepthCorner, Depths};
 use super::distances::{DepthDifference, Tangency};
@@ -21,14 +22,6 @@ use std::rc::Rc;
 /// which `c` is lowered: see [`SLOPE_MARGIN`](super::slope::SLOPE_MARGIN).
 const MAX_TANGENT_JUMP: f64 = 4e-9;
 pub(super) const MAX_TANGENT_SLOPE: f64 = 1e-5;
-
-/// A region and its neighbour, or `None` for the outside, where depth is 0. Of two regions, the one listed earlier is
-/// first.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub(super) struct Pair {
-    pub(super) own: usize,
-    pub(super) other: Option<usize>,
-}
 
 /// The continuity of depth from one owner to another.
 #[derive(Clone, Copy, PartialEq)]

@@ -7,7 +7,7 @@
 
 use super::rounding::RoundingErrors;
 use super::witness::Witness;
-use super::{Certificate, RegionFacts};
+use super::{CertainValue, Certificate, JumpPoint, RegionFacts};
 use crate::bound::Extent;
 use crate::domain::Domain;
 use crate::expr::interval::{Cell, Interval, ZERO};
@@ -72,8 +72,8 @@ impl Meridian {
         let regions = facts.map(|((facts, region), share)| RegionFacts {
             share,
             // Angles and rates are the same at the point of the half plane in space.
-            oblique_witness: facts.oblique_witness.map(|(angle, point)| (angle, self.point(point))),
-            rising_witness: facts.rising_witness.map(|(rate, point)| (rate, self.point(point))),
+            oblique_witness: facts.oblique_witness.map(|certain| self.certain(certain)),
+            rising_witness: facts.rising_witness.map(|certain| self.certain(certain)),
             steep_at: facts.steep_at.map(|point| self.point(point)),
             singular_cells: facts.singular_cells.iter().map(|cell| self.cell(cell)).collect(),
             rounding_error: errors.over(region.depth, &whole),
@@ -83,11 +83,15 @@ impl Meridian {
         let mut borders = proved.borders;
         for border in &mut borders {
             border.jump_point =
-                border.jump_point.map(|(point, depths)| (self.point(point), depths));
+                border.jump_point.map(|jump| JumpPoint { point: self.point(jump.point), ..jump });
         }
         let mut undecided = proved.undecided;
         undecided.iter_mut().for_each(|open| open.cell = self.cell(&open.cell));
         Certificate { regions, borders, undecided, ..proved }
+    }
+
+    fn certain(&self, CertainValue { value, point }: CertainValue) -> CertainValue {
+        CertainValue { value, point: self.point(point) }
     }
 
     fn point(&self, [d, _, z]: [f64; 3]) -> [f64; 3] {

@@ -1,7 +1,6 @@
 //! Evidence from single points: jumps and shares.
 
-use super::borders::Pair;
-use super::{JumpPoint, TOLERANCE};
+use super::{JumpPoint, Pair, TOLERANCE};
 use crate::bound::spread;
 use crate::domain::Domain;
 use crate::expr::interval::Cell;
@@ -96,7 +95,8 @@ impl<'t> Witness<'t> {
         self.owner(a);
         let [first, second] =
             owners.map(|owner| owner.map_or(0.0, |owner| self.values.get(regions[owner].depth)));
-        ((first - second).abs() > TOLERANCE * self.size).then_some((a, [first, second]))
+        ((first - second).abs() > TOLERANCE * self.size)
+            .then_some(JumpPoint { point: a, depths: [first, second] })
     }
 
     fn owner(&mut self, [x, y, z]: [f64; 3]) -> Option<usize> {

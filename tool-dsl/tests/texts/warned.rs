@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 use touchoff_dsl::diagnostic::Severity;
-use touchoff_dsl::prove::Certificate;
+use touchoff_dsl::prove::{CertainValue, Certificate};
 use touchoff_dsl::source::Source;
 use touchoff_dsl::{CheckedTool, Compiled, compile};
 
@@ -67,7 +67,8 @@ fn the_largest_angle_is_given_with_its_place() {
     // The direction is exact where z is small, and increasingly oblique above.
     let tool = tool(&pin("direction: (40, z);"));
     let facts = &Certificate::prove(&tool).regions[2];
-    let (angle, [_, _, z]) = facts.oblique_witness.expect("the direction is oblique");
+    let CertainValue { value: angle, point: [_, _, z] } =
+        facts.oblique_witness.expect("the direction is oblique");
     assert!((angle.tan() - z / 40.0).abs() < 1e-12 && z > 38.0, "{angle} at {z}");
     assert!(facts.direction_error.is_some_and(|aside| aside.high >= angle));
 }

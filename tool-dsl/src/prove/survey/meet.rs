@@ -1,9 +1,9 @@
 //! Borders in a box with several owners: the continuity of depth from one to another.
 
-use super::super::borders::{Joint, Pair, Separation};
+use super::super::borders::{Joint, Separation};
 use super::super::cover::{Claim, half_diagonal};
 use super::super::slope::{Slope, angle, fall_rate_across, shortest_combination};
-use super::super::{Border, JumpPoint, OpenProof, SMALL_BOX_FRACTION, TOLERANCE};
+use super::super::{Border, JumpPoint, OpenProof, Pair, SMALL_BOX_FRACTION, TOLERANCE};
 use super::{BoxSize, MAX_SLOPE_UNCERTAINTY, STEEP_SLOPE, Survey, sum_rounded_up};
 use crate::diagnostic::Statement;
 use crate::domain::Domain;
@@ -270,7 +270,7 @@ impl Survey<'_> {
             self.difference(pair, |region| region.magnitude)
         };
         let border = Border {
-            sides: (own, other),
+            sides: pair,
             depth_jump: jump,
             magnitude_jump,
             direction_angle: turn_angle,

@@ -1,7 +1,7 @@
 //! The traversal of boxes: bounds of the quantities in each region, and of their changes from one region to
 //! the next; and the certificate that follows from all boxes.
 
-use super::borders::{BorderProver, Pair};
+use super::borders::BorderProver;
 use super::cover::{Boxes, Claim, Cover, half_diagonal};
 use super::depths::Depths;
 use super::direction::{self, DirectionFacts, angle_to_descent};
@@ -12,8 +12,8 @@ use super::rounding::RoundingErrors;
 use super::slope::{SLOPE_MARGIN, Slopes};
 use super::witness::Witness;
 use super::{
-    Border, Certificate, JumpPoint, MAX_BOXES, OpenProof, RegionFacts, SMALL_BOX_FRACTION,
-    TOLERANCE,
+    Border, CertainValue, Certificate, JumpPoint, MAX_BOXES, OpenProof, Pair, RegionFacts,
+    SMALL_BOX_FRACTION, TOLERANCE,
 };
 use crate::diagnostic::Statement;
 use crate::domain::Domain;
@@ -407,9 +407,6 @@ impl<'t> Survey<'t> {
 /// with four decimals turn it by no more.
 const ANGLE_TOLERANCE: f64 = 1e-4;
 
-/// A value that is certain at a point, and the point.
-type CertainValue = (f64, [f64; 3]);
-
 /// The facts about a region that are certain at single points.
 #[derive(Clone, Default)]
 struct CertainFacts {
@@ -420,8 +417,8 @@ struct CertainFacts {
 }
 
 fn keep_larger(known: &mut Option<CertainValue>, value: f64, point: [f64; 3]) {
-    if known.is_none_or(|(largest, _)| value > largest) {
-        *known = Some((value, point));
+    if known.is_none_or(|largest| value > largest.value) {
+        *known = Some(CertainValue { value, point });
     }
 }
 
@@ -430,7 +427,7 @@ impl Survey<'_> {
     /// known: a larger angle, or a niceness that rises.
     fn examine_centre(&mut self, owner: usize, cell: Cell, angle: f64, may_rise: bool) {
         let known =
-            self.certain_facts[owner].oblique.map_or(ANGLE_TOLERANCE, |(largest, _)| largest);
+            self.certain_facts[owner].oblique.map_or(ANGLE_TOLERANCE, |largest| largest.value);
         if angle <= known && !may_rise {
             return;
         }

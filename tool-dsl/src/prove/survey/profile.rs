@@ -1,7 +1,7 @@
 //! Borders of a profile's regions. That depth is continuous there follows from the partition; boxes only describe where regions
 //! meet and how directions and magnitudes differ.
 
-use super::super::borders::Pair;
+use super::super::Pair;
 use super::super::cover::half_diagonal;
 use super::super::{SMALL_BOX_FRACTION, TOLERANCE};
 use super::{BoxSize, Survey};
