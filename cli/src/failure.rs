@@ -82,7 +82,9 @@ pub(crate) enum Failure {
     #[error("{0}")]
     Usage(&'static str),
     /// No folder can be named after a library.
-    #[error("no folder can be named after {file}: name the one for its tools by `-o`")]
+    #[error(
+        "no folder can be named after {file}, or a link has that name: name the one for its tools by `-o`"
+    )]
     NoFolder { file: String },
     /// Nothing has such a code.
     #[error("no error, warning, finding or gap has the code `{code}`: {}", near_codes(near))]

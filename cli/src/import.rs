@@ -71,11 +71,11 @@ pub(crate) fn import(arguments: &Import, json: bool) -> Result<ExitCode, Failure
 /// Returns the folder with the name of a library, in the current folder.
 ///
 /// # Errors
-/// If its name without the ending is none of a folder there, as `..` of `...json`.
+/// If its name without the ending is none of a folder there, as `..` of `...json`, or a link: the folder was not named by the user.
 fn folder_named_after(file: &Path) -> Result<PathBuf, Failure> {
     let stem = Path::new(file.file_stem().unwrap_or_default());
     match stem.components().next() {
-        Some(Component::Normal(name)) if name == stem => Ok(stem.to_owned()),
+        Some(Component::Normal(name)) if name == stem && !stem.is_symlink() => Ok(stem.to_owned()),
         _ => Err(Failure::NoFolder { file: file.display().to_string() }),
     }
 }

@@ -220,13 +220,18 @@ impl Library {
         &self.skipped
     }
 
-    /// Returns the tools with this name; without one, those with this title, and then those with this number.
+    /// Returns the tools that a text names. `T5` are those with the number 5, as programs select them, if there is one. Then come those with
+    /// this name; without one, those with this title, and then those with this number.
     pub fn find(&self, wanted: &str) -> Vec<&ImportedTool> {
         let number: Option<u32> = wanted.trim_start_matches(['T', 't']).parse().ok();
-        let is_wanted: [&dyn Fn(&ImportedTool) -> bool; 3] =
-            [&|tool| tool.name == wanted, &|tool| tool.entry.title == wanted, &|tool| {
-                number.is_some() && tool.entry.number == number
-            }];
+        let has_number = |tool: &ImportedTool| number.is_some() && tool.entry.number == number;
+        let is_selection = number.is_some_and(|number| wanted == format!("T{number}"));
+        let is_wanted: [&dyn Fn(&ImportedTool) -> bool; 4] = [
+            &|tool| is_selection && has_number(tool),
+            &|tool| tool.name == wanted,
+            &|tool| tool.entry.title == wanted,
+            &has_number,
+        ];
         let mut found = is_wanted
             .into_iter()
             .map(|is_wanted| self.tools.iter().filter(|tool| is_wanted(tool)).collect::<Vec<_>>());

@@ -206,6 +206,13 @@ impl<'a> Certifier<'a> {
         })
     }
 
+    /// Returns the least tolerance of [`Certifier::check_motion`], in the part's unit, for motions along poses without an error of their
+    /// own that are no faster than the part is large: a lower one is taken as that. It grows with the extent of the part.
+    pub fn least_motion_tolerance(&self) -> f64 {
+        let Certifier { setting, .. } = self;
+        2.0 * motion_depth::MIN_SWEEP_TOLERANCE * setting.error * setting.length
+    }
+
     /// Sets the budget of a query: the number of nodes, triangles and intervals of edges that it may examine. When
     /// the budget is spent, the answer is the bound proved until then. The default is 2^20.
     #[must_use]

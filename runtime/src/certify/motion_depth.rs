@@ -54,7 +54,7 @@ fn determines_pose(info: &ToolInfo, motion: &dyn Trajectory) -> bool {
 /// The tolerance of a sweep is at least this times the error bound of a point. A point is found to be too deep from 2 error
 /// bounds above the limit, and a bound rules it out up to 1 below the tolerance: 3 would leave no point undecided. The rest is
 /// for the displacements in an interval of time, which need not become as short as the errors.
-const MIN_SWEEP_TOLERANCE: f64 = 16.0;
+pub(super) const MIN_SWEEP_TOLERANCE: f64 = 16.0;
 
 /// To that comes this number of times the error of the trajectory. A point is found to be too deep from 1 error above the
 /// limit, as it is that far from where the approximating motion has it, and it is ruled out up to 1 below the tolerance.

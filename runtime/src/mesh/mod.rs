@@ -44,6 +44,9 @@ pub const LARGEST_COORDINATE: f64 = 1e60;
 /// this size, so smaller coordinates count as 0.
 const WELD_TOLERANCE_FRACTION: f64 = 1.0 / (1u64 << 40) as f64;
 
+/// The largest such noise, in millimetres: that of a part of a kilometre.
+const MAX_NOISE: f64 = 1e-6;
+
 /// Smallest sine of a triangle's angle for which the normal is meaningful, some ten times the rounding
 /// error in the cross product of two edges.
 const SMALLEST_SINE: f64 = 16.0 * f64::EPSILON;
@@ -269,8 +272,9 @@ impl Mesh {
 /// Builds a mesh from the corners of its facets. The first of several equal corners defines the vertex's coordinates.
 fn weld(corners: &[[Point3<f64>; 3]], unit: Unit) -> Result<Mesh, MeshError> {
     let [low, high] = bounds(corners.iter().flatten().copied());
-    // Relative to the part's size: it is what exporters leave of a coordinate that should be 0.
-    let noise = (high - low).amax() * WELD_TOLERANCE_FRACTION;
+    // Relative to the part's size: it is what exporters leave of a coordinate that should be 0. Pieces far away make no feature of the
+    // others noise.
+    let noise = ((high - low).amax() * WELD_TOLERANCE_FRACTION).min(MAX_NOISE / unit.millimetres());
     let mut indices = HashMap::new();
     let mut vertices = Vec::new();
     let mut triangles = Vec::with_capacity(corners.len());

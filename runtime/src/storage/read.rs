@@ -2,6 +2,7 @@
 
 use crate::bvh::{Frame, WIDTH};
 use crate::cloud::CoveringRadius;
+use crate::mesh::is_valid_coordinate;
 use crate::part::Part;
 use crate::point_bvh::PointBvh;
 use crate::storage::SavedError;
@@ -146,9 +147,13 @@ impl FileContext<'_> {
         Outline { stem, lists }: &Outline,
         source: &mut impl Read,
     ) -> Result<PointBvh, SavedError> {
-        let positive = [stem.weight, stem.radius, stem.size.into(), stem.leaf_size.into()];
-        if !(stem.scale > 0.0 && positive.iter().all(|number| *number >= 0.0)) {
+        let sizes = [stem.weight, stem.radius, stem.size.into(), stem.leaf_size.into(), stem.scale];
+        let is_size = |size: &f64| *size >= 0.0 && is_valid_coordinate(*size);
+        if !(stem.scale > 0.0 && sizes.iter().all(is_size)) {
             return Err(self.unsound("a tree has a size that is no size"));
+        }
+        if !stem.origin.iter().all(|coordinate| is_valid_coordinate(*coordinate)) {
+            return Err(self.unsound("a tree has a frame without a place"));
         }
         if u64::from(stem.gone) > stem.points {
             return Err(self.unsound("a tree lacks more points than it has"));

@@ -2,8 +2,7 @@
 
 use crate::diagnostic::{Diagnostic, ProfileKind, enough};
 use crate::geometry::outline::{
-    CANCELLED, Point, Segment, TANGENT_SINE, bounding_box, cross, dot, doubles, minus, norm,
-    sample_points,
+    Point, Segment, TANGENT_SINE, bounding_box, cross, dot, doubles, minus, norm, sample_points,
 };
 
 /// The part of the largest radius by which an arc may pass the axis, or stay away from it, and end on it.
@@ -11,6 +10,10 @@ const AXIS_ROUNDING: f64 = 1e-12;
 
 /// The part of the size within which two segments have a point in common.
 const COMMON_POINT_ROUNDING: f64 = 1e-9;
+
+/// The sine up to which two lines are in line, but for the rounding of coordinates in doubles. The partition takes their directions as they
+/// are: between their normals, which part by no more than that of the length, depth differs by its square.
+const IN_LINE_SINE: f64 = 1e-13;
 
 /// Checks a profile that runs from the axis to the axis: contact with the axis, orientation, turns between neighbours,
 /// self-intersections. Returns the diagnostics.
@@ -128,9 +131,8 @@ fn hardly_turns(before: &Segment, after: &Segment) -> bool {
     let (Some([ad, az]), Some([bd, bz])) = (before.direction(), after.direction()) else {
         return false;
     };
-    // The rounding error in 256 bits is far below the lower limit.
     let sine = (&(&ad * &bz) - &(&az * &bd)).to_f64().abs();
-    (CANCELLED..TANGENT_SINE).contains(&sine)
+    (IN_LINE_SINE..TANGENT_SINE).contains(&sine)
 }
 
 /// Returns a common point of two segments. For neighbours, the start of `b` that they share does not count.

@@ -3,6 +3,7 @@
 
 use super::moves::{self, Move, MovePath, RapidBox};
 use super::{Finding, FindingKind, Verifier, VerifyError};
+use crate::gcode::WorkOffset;
 use nalgebra::Point3;
 use touchoff::certify::Certifier;
 use touchoff::tool::Symmetry;
@@ -18,9 +19,9 @@ pub struct Approach {
     pub program: [Point3<f64>; 2],
     /// Length that the tip travels in feed and in rapid traverse. Curved paths are measured along 16 chords.
     pub travel: [f64; 2],
-    /// The factor by which all positions in feed, which lie outside the part's box, would fit into it: a sign that the
-    /// program or the part is in another unit.
-    pub unit_factor: Option<f64>,
+    /// Lowest and highest corner of the bounding box of the tips at the ends of motions in feed, if there are a few of them, without those
+    /// for other parts.
+    pub feed: Option<[Point3<f64>; 2]>,
     /// Upper bound on the least distance between the tool and a triangle of the part; 0 if they are found to touch. It is
     /// that of the nearest end of a motion or finding: along a motion it may be less. Infinite for a tool without a profile
     /// that is not found to touch: its distances have no upper bound.
@@ -35,6 +36,23 @@ pub struct Approach {
 }
 
 impl Approach {
+    /// Returns the factor by which all positions in feed would fit into the part's box much better than they do: a sign that the program or
+    /// the part is in another unit.
+    pub fn unit_factor(&self) -> Option<f64> {
+        Approach::unit_factor_of(std::slice::from_ref(self))
+    }
+
+    /// Returns that factor for the tools of a program together, at one part.
+    pub fn unit_factor_of<'a>(tools: impl IntoIterator<Item = &'a Approach>) -> Option<f64> {
+        let found =
+            tools.into_iter().filter_map(|tool| Some((tool.part, tool.feed?, tool.diameter)));
+        let whole =
+            found.reduce(|(part, [low, high], wide), (_, [other_low, other_high], other)| {
+                (part, [low.inf(&other_low), high.sup(&other_high)], wide.max(other))
+            });
+        whole.and_then(|(part, feed, diameter)| unit_factor(part, feed, diameter))
+    }
+
     /// Returns whether the tool stays farther from the part than its diameter on all motions. The program is
     /// then hardly meant for this part in this position.
     pub fn is_far(&self) -> bool {
@@ -70,6 +88,8 @@ pub(crate) struct ApproachSearch<'a> {
     travel: [f64; 2],
     /// Number of motions in feed.
     feeds: usize,
+    /// Work offsets at which other parts stand.
+    pub(super) other_parts: Vec<WorkOffset>,
     /// The last pose, with a lower bound on its distance.
     last: Option<(f64, Pose)>,
 }
@@ -98,6 +118,7 @@ impl<'a> ApproachSearch<'a> {
             tips: [None; 2],
             travel: [0.0; 2],
             feeds: 0,
+            other_parts: Vec::new(),
             last: None,
             verifier,
         })
@@ -109,8 +130,11 @@ impl<'a> ApproachSearch<'a> {
             self.travel[usize::from(step.rapid)] += path_length(&step.path);
             self.feeds += usize::from(!step.rapid);
         }
+        let is_elsewhere =
+            |step: &Move| step.work_offset.is_some_and(|offset| self.other_parts.contains(&offset));
         for (feed_only, tips) in [false, true].into_iter().zip(&mut self.tips) {
-            let ends = moves.iter().filter(|step| !(feed_only && step.rapid));
+            let ends =
+                moves.iter().filter(|step| !(feed_only && (step.rapid || is_elsewhere(step))));
             let ends = ends.map(|step| step.path.pose(1.0).tip());
             for tip in ends {
                 let [low, high] = tips.unwrap_or([tip; 2]);
@@ -199,7 +223,7 @@ impl<'a> ApproachSearch<'a> {
             part,
             program: all.unwrap_or([Point3::origin(); 2]),
             travel: self.travel,
-            unit_factor: feed.and_then(|feed| unit_factor(part, feed, self.diameter)),
+            feed,
             distance: if self.is_measured { self.distance } else { f64::INFINITY },
             line: self.line,
             diameter: self.diameter,

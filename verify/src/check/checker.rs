@@ -18,6 +18,14 @@ pub(super) struct Checker<'a> {
     /// The greatest possible depth of each surface.
     max_depths: Arc<[f64]>,
     free_space: FreeSpace<'a>,
+    /// For boxes of rapid traverse: certifiers whose surfaces keep a distance more than their margins.
+    distant: Vec<Distant<'a>>,
+}
+
+/// A certifier whose surfaces keep a distance more than their margins in rapid traverse.
+struct Distant<'a> {
+    distance: f64,
+    certifier: Certifier<'a>,
 }
 
 /// A certifier with the allowances of feed or of rapid traverse.
@@ -57,12 +65,14 @@ impl<'a> Checker<'a> {
             modes: [Mode::new(verifier, false)?, Mode::new(verifier, true)?],
             max_depths,
             free_space,
+            distant: Vec::new(),
         })
     }
 
     /// Forgets the motions before: equal motions after it have equal findings.
     pub(super) fn clear_caches(&mut self) {
         self.modes.iter_mut().for_each(|mode| mode.certifier.clear_caches());
+        self.distant.iter_mut().for_each(|distant| distant.certifier.clear_caches());
         self.free_space.clear();
     }
 
@@ -128,10 +138,11 @@ impl<'a> Checker<'a> {
 
     /// Returns the findings of rapid traverse through any poses of a box, each with its pose.
     ///
-    /// The box is halved until each piece is proved: around the pose in its middle the tool is in free space, or its depth
-    /// there exceeds what is allowed by no more than half of the resolution, and changes by no more than the other half up to
-    /// any pose in the piece. It ends at a pose in the middle of a piece that is a finding by itself. A piece that would need
-    /// more than [`MAX_PIECES`] is undecided.
+    /// The box is divided across all ways but its longest, until each piece is proved: around the pose in its middle the tool is in free
+    /// space, or along the longest way, through the middle of the others, every surface keeps its margin and the distance from there to
+    /// any pose of the piece; or its depth on that line exceeds what is allowed by no more than half of the resolution, and changes by no
+    /// more than the other half up to any pose of the piece. It ends at a line with a finding. A box that would need more than
+    /// [`MAX_PIECES`] is undecided.
     fn rapid_box(&mut self, path: &RapidBox) -> Vec<(Pose, FindingKind)> {
         let margin = self.modes[1].margin;
         let lipschitz = self.verifier.lipschitz();
@@ -146,35 +157,72 @@ impl<'a> Checker<'a> {
             let middle = piece.pose(0.5);
             // Every pose is within the radius of the middle; its coordinates are rounded.
             let size = middle.tip().coords.norm() + 2.0 * piece.radius();
-            let radius = piece.radius() + 16.0 * f64::EPSILON * size;
+            let rounding = 16.0 * f64::EPSILON * size;
             // A piece that is free needs no halving, so the query is worth its price here.
             self.free_space.wait = 0;
-            if self.free_space.contains([middle, middle], radius, margin) {
+            if self.free_space.contains([middle, middle], piece.radius() + rounding, margin) {
                 continue;
             }
-            let found = match Motion::with_spin(&middle, &middle) {
-                Ok(rest) => self.contacts(true, &rest, half),
-                Err(error) => vec![TimedFinding::ambiguous(error)],
+            let [from, to] = piece.longest_line();
+            let across = piece.radius_across() + rounding;
+            let line = match Motion::with_spin(&from, &to) {
+                Ok(line) => line,
+                Err(error) => return vec![(middle, TimedFinding::ambiguous(error).kind)],
             };
+            if self.keeps_away(&line, across) {
+                continue;
+            }
+            let found = self.contacts(true, &line, half);
             if !found.is_empty() {
-                // No pose of the box is farther from the middle of a piece than the box's diagonal.
+                // No pose of the box is farther from a line in it than its diagonal.
                 let spread = 2.0 * path.radius() * lipschitz;
                 let over_box = found.into_iter().map(|mut found| {
                     widen(&mut found.kind, spread);
-                    (middle, found.kind)
+                    (line.pose(found.time), found.kind)
                 });
                 return over_box.collect();
             }
-            if radius * lipschitz + difference <= half {
+            if piece.radius_across() == 0.0 || across * lipschitz + difference <= half {
                 continue;
             }
             count += 1;
             if count > MAX_PIECES {
                 return self.undecided().map(|kind| (middle, kind)).collect();
             }
-            open.extend(piece.halves());
+            open.extend(piece.halves_across());
         }
         Vec::new()
+    }
+
+    /// Returns whether along a motion every surface is proved to keep its margin for rapid traverse and a distance more.
+    fn keeps_away(&mut self, motion: &Motion, distance: f64) -> bool {
+        // A motion is certainly nearer than a margin from this on. Certifiers are kept by the power of two up to which they serve.
+        let least = self.modes[1].certifier.least_motion_tolerance();
+        let exponent = (distance + least).log2().ceil();
+        let kept = f64::exp2(exponent);
+        if !kept.is_finite() || kept < f64::MIN_POSITIVE {
+            return false;
+        }
+        let index = match self.distant.iter().position(|distant| distant.distance == kept) {
+            Some(index) => index,
+            None => {
+                let limits = self.modes[1].limits.iter();
+                let limits = limits.map(|limit| match *limit == f64::INFINITY {
+                    true => f64::INFINITY,
+                    false => limit.min(0.0) - kept,
+                });
+                let surfaces = self.verifier.tool.info().surfaces.iter().zip(limits);
+                let certifier = Certifier::new(self.verifier.bvh, self.verifier.tool)
+                    .expect("it was created for the modes before")
+                    .with_budget(self.verifier.budget)
+                    .with_allowances(surfaces.map(|(surface, limit)| (&*surface.name, limit)));
+                let Ok(certifier) = certifier else { return false };
+                self.distant.push(Distant { distance: kept, certifier });
+                self.distant.len() - 1
+            }
+        };
+        let verdict = self.distant[index].certifier.check_motion(motion, 0.0);
+        matches!(verdict, MotionVerdict::Clear | MotionVerdict::SurfaceOnly)
     }
 
     /// Returns whether a motion is proved to stay in free space.
@@ -262,7 +310,7 @@ impl<'a> Mode<'a> {
                     (at, FindingKind::Near { surface, margin, distance, min_distance, witness })
                 }
                 MotionDepth::Deeper { at, depth, max_depth, witness } => {
-                    let through = depth.high >= THROUGH_FRACTION * max_depths[index];
+                    let through = depth.low >= THROUGH_FRACTION * max_depths[index];
                     (at, FindingKind::Deep { surface, allowed, depth, max_depth, through, witness })
                 }
                 MotionDepth::Inside => {

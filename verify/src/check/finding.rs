@@ -34,6 +34,18 @@ faults! {
             /// The given value.
             tolerance: f64,
         },
+        /// The part is so large that rounding hides more than the resolution.
+        #[code = J0504]
+        #[error(
+            "the part is so large that motions are checked to {least:.3} {unit} only: remove what is far away, or state a resolution \
+             from that on"
+        )]
+        Rounding {
+            /// The least resolution, in the part's unit.
+            least: f64,
+            /// The symbol of that unit.
+            unit: &'static str,
+        },
     }
 }
 

@@ -453,6 +453,7 @@ impl MachineProgram {
         let mut summary = MachineSummary::default();
         let mut seen: Vec<(Option<u32>, BlockLine)> = Vec::new();
         let mut is_last_singular = false;
+        let has_z_limits = self.machine.axis(Letter::Z).is_some_and(|axis| axis.limits.is_some());
         // The other controls turn axes by ISO 841.
         let asks_direction = !self.machine.states_directions()
             && self.setup.rules.get(Rule::Dialect) == Some(Choice::Rs274Ngc);
@@ -547,6 +548,10 @@ impl MachineProgram {
                     }
                     let is_judged =
                         is_judged || execution.resolver.leaves_change(&step, cause, arrives);
+                    let way = execution.resolver.top_way(&step).filter(|_| !is_known);
+                    if let (Some(tool), Some(way)) = (number, way) {
+                        MachineSummary::add_top_way(&mut summary.top_ways, step.block(), tool, way);
+                    }
                     summary.add_unknown(&step, cause, is_judged);
                     continue;
                 }
@@ -555,10 +560,7 @@ impl MachineProgram {
                     let AnyRapid { straight, edges } = *any;
                     // The level of an empty spindle is the same at all rates, and it meets no stock.
                     match edges {
-                        Some(_) if is_empty => {}
-                        Some(_) => {
-                            summary.any_rapid.get_or_insert(step.block());
-                        }
+                        Some(_) => {}
                         None => {
                             summary.any_rotary_rapid.get_or_insert(step.block());
                         }
@@ -570,6 +572,11 @@ impl MachineProgram {
                 summary.empty_motions += 1;
             } else {
                 summary.use_of(&step).motions += 1;
+                let has_length = is_known
+                    || matches!(step.state.length, LengthOffset::On { length: Some(_), .. });
+                if is_placed && has_z_limits && !has_length && step.commanded[2] {
+                    summary.z_limit_unchecked.get_or_insert(step.block());
+                }
                 if step.rapid {
                     summary.add_rapid(&step, self.off_is_tip, self.unnamed_tool);
                 }

@@ -41,6 +41,7 @@ pub(crate) use machine_program::{CheckGap, MoveRequest};
 pub use moves::{JointPath, Move, MovePath, RapidBox};
 pub use remedy::Tilt;
 
+use crate::gcode::WorkOffset;
 use crate::program::ClData;
 pub(crate) use approach::ApproachSearch;
 use checker::Checker;
@@ -339,6 +340,12 @@ impl<'a> MoveCheck<'a> {
         verifier: &'a Verifier<'a>,
         max_depths: Arc<[f64]>,
     ) -> Result<MoveCheck<'a>, VerifyError> {
+        let unit = verifier.bvh.unit();
+        let least = Certifier::new(verifier.bvh, verifier.tool)?.least_motion_tolerance();
+        // A resolution below the default one is taken as what rounding adds.
+        if least > verifier.resolution.max(Verifier::default_resolution(unit)) {
+            return Err(VerifyError::Rounding { least, unit: unit.symbol() });
+        }
         Ok(MoveCheck {
             verifier,
             max_depths,
@@ -349,6 +356,15 @@ impl<'a> MoveCheck<'a> {
             count: 0,
             modes: [false; 2],
         })
+    }
+
+    /// States the work offsets at which other parts stand: positions under them tell nothing about the unit of this one.
+    pub(crate) fn with_other_parts(
+        mut self,
+        offsets: impl IntoIterator<Item = WorkOffset>,
+    ) -> MoveCheck<'a> {
+        self.approach.other_parts = offsets.into_iter().collect();
+        self
     }
 
     /// Adds a motion, and checks those that wait if they fill a batch.

@@ -67,20 +67,67 @@ impl RapidBox {
         self.at(self.start.tip() + fraction * self.edges.iter().sum::<Vector3<f64>>())
     }
 
+    /// Returns the lowest and the highest corner of a box that holds a tool at all poses, in a unit.
+    pub(crate) fn tool_bounds(&self, info: &ToolInfo, unit: Unit) -> [Point3<f64>; 2] {
+        let factor = info.unit.factor_to(unit);
+        let (axis, reach, radius) = (self.start.axis(), info.reach(), info.radius() * factor);
+        let ends = [reach.low, reach.high].map(|at| self.start.tip() + axis.scale(at * factor));
+        let mut bounds = [ends[0].inf(&ends[1]), ends[0].sup(&ends[1])];
+        for k in 0..3 {
+            // A disc across the axis.
+            let across = radius * (1.0 - axis[k] * axis[k]).max(0.0).sqrt();
+            let ways = self.edges.iter().map(|edge| edge[k]);
+            bounds[0][k] += ways.clone().map(|way| way.min(0.0)).sum::<f64>() - across;
+            bounds[1][k] += ways.map(|way| way.max(0.0)).sum::<f64>() + across;
+        }
+        bounds
+    }
+
     /// Returns an upper bound on the distance of the box's poses from that in its middle, without rounding.
     pub(super) fn radius(&self) -> f64 {
         0.5 * self.edges.iter().map(Vector3::norm_squared).sum::<f64>().sqrt()
     }
 
+    /// Returns the index of its longest way.
+    fn longest(&self) -> Option<usize> {
+        (0..self.edges.len())
+            .max_by(|one, other| self.edges[*one].norm().total_cmp(&self.edges[*other].norm()))
+    }
+
+    /// Returns the poses at both ends of its longest way, in the middle of the others.
+    pub(super) fn longest_line(&self) -> [Pose; 2] {
+        let middle = self.pose(0.5).tip();
+        let half = self.longest().map_or_else(Vector3::zeros, |index| 0.5 * self.edges[index]);
+        [middle - half, middle + half].map(|tip| self.at(tip))
+    }
+
+    /// Returns an upper bound on the distance of the box's poses from that line, without rounding.
+    pub(super) fn radius_across(&self) -> f64 {
+        let longest = self.longest();
+        let others = (0..self.edges.len()).filter(|index| Some(*index) != longest);
+        0.5 * others.map(|index| self.edges[index].norm_squared()).sum::<f64>().sqrt()
+    }
+
+    /// Returns both halves of the box, divided across its second longest way.
+    pub(super) fn halves_across(&self) -> [RapidBox; 2] {
+        let longest = self.longest();
+        let others = (0..self.edges.len()).filter(|index| Some(*index) != longest);
+        let second = others
+            .max_by(|one, other| self.edges[*one].norm().total_cmp(&self.edges[*other].norm()));
+        self.halves_of(second.or(longest))
+    }
+
     /// Returns both halves of the box, divided across its longest way.
     pub(super) fn halves(&self) -> [RapidBox; 2] {
+        self.halves_of(self.longest())
+    }
+
+    fn halves_of(&self, way: Option<usize>) -> [RapidBox; 2] {
         let mut half = self.clone();
-        let longest =
-            half.edges.iter_mut().max_by(|one, other| one.norm().total_cmp(&other.norm()));
         // A box without ways is a pose, which has no halves.
-        let Some(longest) = longest else { return [half.clone(), half] };
-        *longest *= 0.5;
-        let middle = self.start.tip() + *longest;
+        let Some(way) = way else { return [half.clone(), half] };
+        half.edges[way] *= 0.5;
+        let middle = self.start.tip() + half.edges[way];
         [half.clone(), RapidBox { start: self.at(middle), ..half }]
     }
 }

@@ -339,7 +339,11 @@ impl Code {
             // The words of path control decide what is said of corners.
             Ok(group) => group == Group::PassedOver,
             Err(GcodeFault::NotRead { remedy, .. }) => remedy == IGNORE,
-            Err(_) => true,
+            // Work offsets and frames of Sinumerik, and its change of the language.
+            Err(_) => !matches!(
+                (self.letter, self.tenths),
+                ('G', 1530 | 2900 | 2910 | 5000 | 5050..=5990)
+            ),
         }
     }
 

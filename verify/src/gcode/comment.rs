@@ -179,7 +179,7 @@ fn description(
     // The size of an engraving bit is that of its tip.
     let braced = rest.split_once('{').and_then(|(_, inner)| inner.split('}').next());
     let braced = braced.filter(|inner| !inner.contains("TIP"));
-    let rest = &*without_work(rest);
+    let rest = &*without_counts(&without_work(rest));
     let diameter = value(rest, &["D"])
         .or_else(|| diameter(rest))
         .or_else(|| braced.and_then(last_measure))
@@ -284,16 +284,63 @@ fn begins_word(text: &str, at: usize) -> bool {
     !text[..at].ends_with(|c: char| c.is_ascii_alphanumeric() || c == '_')
 }
 
-/// Returns the length after the last `DIA` or `DIAMETER` that is not the number of an offset, or `D6.` with its point.
+/// Returns the text without numbers that are no diameter: of flutes, of degrees, and lengths of the cutting part or of all.
+fn without_counts(text: &str) -> String {
+    const COUNTED: [&str; 12] =
+        ["FLUTE", "FLUTES", "FLT", "FL", "F", "DEG", "DEGREE", "DEGREES", "°", "LOC", "OAL", "LG"];
+    let is_counted = |word: &str| COUNTED.contains(&word.trim_matches(['-', '.', ',']));
+    let mut kept: Vec<&str> = Vec::new();
+    for word in text.split_whitespace() {
+        // `3FL` and `90DEG` are one word.
+        let number = word.trim_start_matches(|c: char| c.is_ascii_digit() || c == '.');
+        if number.len() < word.len() && is_counted(number) {
+            continue;
+        }
+        if is_counted(word) {
+            // Its number stands before it, with a unit of its own or without one.
+            if kept.len() > 1 && matches!(kept[kept.len() - 1], "MM" | "IN" | "INCH") {
+                kept.pop();
+            }
+            if kept.last().is_some_and(|last| number_in(last).is_some()) {
+                kept.pop();
+            }
+            continue;
+        }
+        kept.push(word);
+    }
+    kept.join(" ")
+}
+
+/// Returns the length of the last `DIA` or `DIAMETER` that is not the number of an offset: after it, or before it where none follows; or
+/// that of `D6.` with its point.
 fn diameter(text: &str) -> Option<Measure> {
-    let named = text.match_indices("DIA").filter_map(|(at, key)| {
+    let named = text.match_indices("DIA").filter(|(at, _)| begins_word(text, *at));
+    let named = named.filter_map(|(at, key)| {
         let rest = &text[at + key.len()..];
         let rest = rest.strip_prefix("METER").or(rest.strip_prefix('M')).unwrap_or(rest);
         let rest = rest.trim_start_matches('.').trim_start();
-        let rest = rest.strip_prefix(['-', '=', ':']).unwrap_or(rest);
-        measure(rest).filter(|_| begins_word(text, at)).map(|found| found.0)
+        let is_offset = rest.starts_with("OFF");
+        let (is_joined, rest) = match rest.strip_prefix(['-', '=', ':']) {
+            Some(rest) => (true, rest),
+            None => (false, rest),
+        };
+        let before = last_word_measure(&text[..at]).filter(|_| !is_joined && !is_offset);
+        before.or_else(|| measure(rest).map(|found| found.0))
     });
     named.last().or_else(|| pointed(text, 'D'))
+}
+
+/// Returns the length that a text ends with: `10MM`, `.500`, `10 MM`.
+fn last_word_measure(text: &str) -> Option<Measure> {
+    let mut words = text.split_whitespace().rev();
+    let last = words.next()?;
+    let (unit, number) = match last {
+        "MM" => (Some(Unit::Millimetre), words.next()?),
+        "IN" | "INCH" => (Some(Unit::Inch), words.next()?),
+        _ => (None, last),
+    };
+    let ((value, own), rest) = measure(number)?;
+    rest.is_empty().then_some((value, own.or(unit)))
 }
 
 /// Returns the length of a word of a letter and a number with a decimal point, as the numbers of offsets have none.
@@ -445,6 +492,14 @@ mod tests {
             ("( T3 : 50.8 surfacing bit )", (3, 50.8, None, Other)),
             ("(T1=6mm_Endmill)", (1, 6.0, None, Unnamed)),
             ("(T1=6mm_Ball_End)", (1, 6.0, None, Ball)),
+            // Neither flutes nor angles nor lengths are diameters.
+            ("(T1 118 DEG DRILL 10MM DIA)", (1, 10.0, None, Other)),
+            ("(T1 10MM DIA 4 FLUTE ENDMILL)", (1, 10.0, None, Unnamed)),
+            ("(T1 - 4 FLUTE 10MM ENDMILL)", (1, 10.0, None, Unnamed)),
+            ("(T1 10. DIA. 3FL EM)", (1, 10.0, None, Other)),
+            ("(T1 .500 DIA 4 FLUTE ENDMILL 1.5 LOC)", (1, 0.5, None, Unnamed)),
+            ("(T1 - ENDMILL 10MM DIA 25MM LOC 72 MM OAL)", (1, 10.0, None, Unnamed)),
+            ("(T1 DIA 10. 4 FLUTE ENDMILL)", (1, 10.0, None, Unnamed)),
             // The size of what the tool makes is another one.
             ("(T3 DRILL DIA 6.8 FOR M8 HOLES DIA 8)", (3, 6.8, None, Other)),
             ("(T1 | 6MM DRILL FOR HOLES | H1 | TOOL DIA. - 6.)", (1, 6.0, None, Other)),
@@ -491,6 +546,9 @@ mod tests {
             "(T3|NO. 7 DRILL|H3|D3)",
             "(T1 1/4-20 TAP)",
             "(T1 DRILLS DIA 8 HOLES)",
+            "T1 M6 (3 FLUTE ENDMILL)",
+            "(T1 90 DEG SPOT DRILL)",
+            "(T1 - 90 DEGREE CHAMFER MILL)",
             "(T1 DRILL, 4 HOLES DIA 8)",
             "(T1 CUTS D=20 POCKET)",
             "(T1 FOR DIA. 8.5)",

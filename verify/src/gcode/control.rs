@@ -4,29 +4,36 @@ mod compensation;
 mod coordinates;
 mod corner;
 mod cycle;
+mod end;
 mod figure;
 mod frame;
 mod heidenhain;
 mod hole;
 mod linuxcnc;
+mod modal;
 mod motion;
 mod offset;
 mod refuse;
 mod report;
+mod spindle;
 
 pub(super) use corner::{Corner, CornerShape, WRITE_OUT};
+pub(super) use modal::StatedModes;
 pub(crate) use refuse::band_radii;
 pub(super) use report::Report;
+pub use spindle::Spindle;
 
 pub(super) use heidenhain::{Circle, Curve};
 
-use super::block::{Block, Code, Group};
-use super::error::{combination, not_read};
+use super::block::{Block, Group};
+use super::error::combination;
 use super::note::{NoteKind, Notes};
 use super::rules::{Choice, ControlRules, Rule};
 use super::state::{ControlState, LengthOffset, Position, RotaryAxes, Rotation, Tcp, WorkOffset};
 use super::{BlockLine, ControlSetup, GcodeFault, Plane, Step, StepPath, SubprogramLine};
 use compensation::Compensation;
+use modal::{FeedMode, Modal, Motion};
+use spindle::SpindleWords;
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 use touchoff::Unit;
@@ -138,54 +145,6 @@ pub(super) struct Control {
     pub(super) pending: VecDeque<Step>,
 }
 
-/// Modal settings.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Modal {
-    /// `None` at the start and after G80, but where that goes back to `path`.
-    motion: Option<Motion>,
-    /// The last of G0 to G3, which cycles do not end on Fanuc and Haas.
-    path: Option<Motion>,
-    plane: Plane,
-    pub(super) unit: Unit,
-    /// Set by G20 and G21.
-    pub(super) unit_stated: bool,
-    /// G91.
-    incremental: bool,
-    /// G90.1 or G91.1; `None` before either.
-    absolute_centres: Option<bool>,
-    feed_mode: FeedMode,
-    feed: Option<f64>,
-    /// Set where the path goes through the corners (G61).
-    pub(super) exact_path: bool,
-    /// G99: canned cycles end in the plane R; `None` before G98 or G99.
-    retract_to_r: Option<bool>,
-}
-
-/// Modes that a program has stated.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct StatedModes {
-    distance: bool,
-    plane: bool,
-    feed: bool,
-}
-
-impl StatedModes {
-    /// Those of a language in which no mode is assumed.
-    pub(super) const ALL: StatedModes = StatedModes { distance: true, plane: true, feed: true };
-}
-
-/// The word that a block with axis words obeys.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Motion {
-    Rapid,
-    Feed,
-    Arc {
-        clockwise: bool,
-    },
-    /// A canned cycle, by its number.
-    Cycle(u32),
-}
-
 /// A return under a length offset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Returned {
@@ -195,15 +154,6 @@ enum Returned {
     OtherAxes,
     /// A motion of Z by G53.
     MachineHeight,
-}
-
-/// Meaning of F.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum FeedMode {
-    PerMinute,
-    /// G93: every block with a feed has its own F.
-    InverseTime,
-    PerRevolution,
 }
 
 /// Words that stay in force from one cycle to the next, lengths in millimetres as given.
@@ -219,39 +169,6 @@ struct Cycle {
     initial: Option<f64>,
     unit: Unit,
     state: Arc<ControlState>,
-}
-
-/// The spindle during a motion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Spindle {
-    /// The program has not said yet whether it turns.
-    NotStated,
-    /// It stands: before M3 or M4, after M5, M19, M6 or a stop that stops it, or at S0.
-    Stopped,
-    /// M3 or M4 is in force, and the program has given no speed S.
-    WithoutSpeed,
-    /// It turns clockwise, seen from the spindle (M3).
-    Clockwise,
-    /// It turns counter-clockwise (M4).
-    CounterClockwise,
-    /// A tapping cycle turns it.
-    Tapping,
-    /// A tapping cycle has ended, which leaves it standing or turning, by the control and by rigid tapping.
-    AfterTapping,
-}
-
-/// The words of the program about the spindle.
-#[derive(Clone, Copy, Debug)]
-struct SpindleWords {
-    /// The last word, without regard to the speed.
-    turn: Spindle,
-    speed: Option<f64>,
-    /// Set from a stop on, until the next word about the spindle.
-    paused: bool,
-    /// Set by M29: the tapping cycles after it turn the spindle themselves.
-    rigid: bool,
-    /// The tapping cycle (G74 or G84) that left the spindle, and found it turning.
-    tapping: Option<u32>,
 }
 
 impl Control {
@@ -540,171 +457,6 @@ impl Control {
         }
     }
 
-    /// Reads the feed mode and F.
-    fn feed(&mut self, block: &mut Block) -> Result<(), GcodeFault> {
-        if let Some(code) = block.code_of(Group::FeedMode) {
-            let mode = match code.tenths {
-                930 => FeedMode::InverseTime,
-                940 => FeedMode::PerMinute,
-                _ => FeedMode::PerRevolution,
-            };
-            // LinuxCNC asks for F again after each word.
-            if mode != self.modal.feed_mode || self.stated(Rule::Dialect) == Some(Choice::Rs274Ngc)
-            {
-                self.modal.feed = None;
-            }
-            self.modal.feed_mode = mode;
-        }
-        // F of G93 is the time of one block.
-        if self.modal.feed_mode == FeedMode::InverseTime {
-            self.modal.feed = None;
-        }
-        // F of a dwell is its time on some controls.
-        let is_dwell = block.code_of(Group::Dwell).is_some();
-        match block.value('F') {
-            Some(value) if value < 0.0 => {
-                let expected = "a positive number";
-                return Err(GcodeFault::NotAllowed { word: 'F', value, expected });
-            }
-            Some(feed) if !is_dwell => {
-                block.take('F');
-                self.modal.feed = Some(feed).filter(|feed| *feed > 0.0);
-            }
-            _ => {}
-        }
-        // LinuxCNC asks for a feed rate also where no axis moves (`convert_straight`).
-        match block.code_of(Group::Motion) {
-            Some(Code { tenths: 10, .. })
-                if self.stated(Rule::Dialect) == Some(Choice::Rs274Ngc) =>
-            {
-                self.check_feed("G1")
-            }
-            _ => Ok(()),
-        }
-    }
-
-    /// Reads the settings that convert and interpret the other words.
-    fn settings(&mut self, block: &mut Block) -> Result<(), GcodeFault> {
-        // P is the number of blocks that Haas reads ahead (G103), or of an output of LinuxCNC (M62 to M65).
-        if block.passed_over.iter().any(|code| {
-            matches!((code.letter, code.tenths), ('G', 1030) | ('M', 620 | 630 | 640 | 650))
-        }) {
-            block.take('P');
-        }
-        if let Some(unit) = block.tenths_of(Group::Units) {
-            let is_inch = matches!(unit, 200 | 700 | 7000);
-            let unit = if is_inch { Unit::Inch } else { Unit::Millimetre };
-            // Fanuc then reads its offsets in the other unit, too.
-            let switches = self.unit_used && unit != self.modal.unit;
-            if switches && matches!(self.stated(Rule::Dialect), None | Some(Choice::Iso)) {
-                let condition = "the program has lengths in another unit";
-                let remedy = "select the unit once, at the start";
-                return Err(combination(if is_inch { "G20" } else { "G21" }, condition, remedy));
-            }
-            self.modal.unit = unit;
-            self.modal.unit_stated = true;
-        }
-        if let Some(distance) = block.tenths_of(Group::Distance) {
-            self.modal.incremental = distance == 910;
-        }
-        if let Some(distance) = block.tenths_of(Group::ArcDistance) {
-            self.modal.absolute_centres = Some(distance == 901);
-        }
-        if let Some(retract) = block.tenths_of(Group::Retract) {
-            self.modal.retract_to_r = Some(retract == 990);
-        }
-        if let Some(plane) = block.tenths_of(Group::Plane) {
-            self.select(match plane {
-                170 => Plane::Xy,
-                180 => Plane::Zx,
-                _ => Plane::Yz,
-            })?;
-        }
-        if let Some(code) = block.code_of(Group::PathControl) {
-            path_control(block, code)?;
-            self.modal.exact_path = matches!(code.tenths, 610 | 611);
-            self.notes.add(self.block(), NoteKind::PassedOver { word: code.to_string() });
-        }
-        Ok(())
-    }
-
-    /// Notes the modes on which a motion depends, and which the program has not stated.
-    fn note_assumed(&mut self, block: &Block) {
-        let StatedModes { distance, plane, feed } = &mut self.stated;
-        let has = |group| block.code_of(group).is_some();
-        *distance |= has(Group::Distance);
-        *plane |= has(Group::Plane);
-        *feed |= has(Group::FeedMode);
-        if !block.is_programmed() || block.owns_axis_words() {
-            return;
-        }
-        let is_own = |letter| block.has(letter) && block.own_distance(letter).is_none();
-        let depends = [
-            ("G90", distance, AXES.into_iter().any(is_own)),
-            (
-                "G17",
-                plane,
-                matches!(self.modal.motion, Some(Motion::Arc { .. } | Motion::Cycle(_))),
-            ),
-            ("G94", feed, self.modal.is_feed()),
-        ];
-        let block = BlockLine { line: self.line, within: self.within };
-        for (word, is_stated, depends) in depends {
-            if depends && !*is_stated {
-                *is_stated = true;
-                self.notes.add_once(block, NoteKind::AssumedMode { word });
-            }
-        }
-    }
-
-    /// Reads the motion mode.
-    fn motion_mode(&mut self, block: &Block) {
-        if block.code_of(Group::CycleOff).is_some() {
-            // Cycles and G80 are a group of their own on Fanuc and Haas. After an arc the next block is mostly not meant as one.
-            let has_groups = self.stated(Rule::Dialect) == Some(Choice::Iso);
-            let is_straight = |motion: &Motion| matches!(motion, Motion::Rapid | Motion::Feed);
-            self.modal.motion = self.modal.path.filter(|path| has_groups && is_straight(path));
-        }
-        if let Some(code) = block.code_of(Group::Motion) {
-            let motion = match code.tenths {
-                0 => Motion::Rapid,
-                10 => Motion::Feed,
-                20 => Motion::Arc { clockwise: true },
-                30 => Motion::Arc { clockwise: false },
-                tenths => Motion::Cycle(tenths / 10),
-            };
-            self.modal.motion = Some(motion);
-            if !matches!(motion, Motion::Cycle(_)) {
-                self.modal.path = Some(motion);
-            }
-        }
-        // Another motion word, or G80, ends the series with its initial level.
-        if self.modal.cycle().is_none() {
-            self.cycle = None;
-        }
-        let is_tapping = matches!(self.modal.motion, Some(Motion::Cycle(74 | 84)));
-        let has_motion =
-            [Group::CycleOff, Group::Motion].map(|group| block.code_of(group).is_some());
-        // M29 holds until G80 or another motion word.
-        if has_motion.contains(&true) && !is_tapping {
-            self.spindle.rigid = false;
-        }
-    }
-
-    /// Selects a plane.
-    fn select(&mut self, plane: Plane) -> Result<(), GcodeFault> {
-        if plane != self.modal.plane {
-            let is_rotated = matches!(self.state.rotation, Rotation::Plane { .. });
-            if is_rotated || self.cycle.is_some() {
-                let condition = "a rotation (G68) or a canned cycle is in force";
-                let remedy = "end it with G69 or G80 before";
-                return Err(combination("another plane", condition, remedy));
-            }
-        }
-        self.modal.plane = plane;
-        Ok(())
-    }
-
     /// Takes the axis words of a block, in millimetres and degrees.
     fn take_axes(&self, block: &mut Block) -> Position {
         let mut axes = AXES.map(|letter| block.take(letter));
@@ -717,71 +469,6 @@ impl Control {
     /// Takes the number after a letter, a length in millimetres.
     fn take_length(&self, block: &mut Block, letter: char) -> Option<f64> {
         block.take(letter).map(|length| self.modal.millimetres(length))
-    }
-
-    /// Checks that there is a feed rate.
-    fn check_feed(&self, word: &str) -> Result<(), GcodeFault> {
-        let inverse = self.modal.feed_mode == FeedMode::InverseTime;
-        match self.modal.feed {
-            Some(_) => Ok(()),
-            None => Err(GcodeFault::NoFeed { word: word.to_owned(), inverse }),
-        }
-    }
-
-    /// Ends the program.
-    pub(super) fn end(&mut self) -> Result<(), GcodeFault> {
-        self.end_compensation()?;
-        if let Some(block) = self.uncalled {
-            self.notes.add(block, NoteKind::UncalledCycle);
-        }
-        let words = self.words_in_force().join(", ");
-        if !words.is_empty() {
-            self.notes.add(self.block(), NoteKind::LeftModes { words });
-        }
-        Ok(())
-    }
-
-    /// Returns words in force that change what positions mean, and that another run of the program may find in force.
-    fn words_in_force(&self) -> Vec<String> {
-        let dialect = self.stated(Rule::Dialect);
-        let is_heidenhain = dialect == Some(Choice::Heidenhain);
-        // M2 and M30 of LinuxCNC end G91 and the shift by G92 (`convert_stop`).
-        let is_linuxcnc = dialect == Some(Choice::Rs274Ngc);
-        let frame = self.frames.word();
-        let has_shift = self.local != [0.0; 6]
-            || self.preset != [Some(0.0); 6] && !is_linuxcnc
-            || frame.is_some();
-        let shift = match frame {
-            Some(word) => word,
-            None if is_heidenhain => "a datum shift",
-            None if self.local == [0.0; 6] => "G92",
-            None => "G52",
-        };
-        let rotation = match self.state.rotation {
-            Rotation::Tilted { .. } if is_heidenhain => "PLANE",
-            Rotation::Tilted { .. } => "G68.2",
-            _ if is_heidenhain => "a rotation",
-            _ => "G68",
-        };
-        let is_rotated = self.state.rotation != Rotation::Off && frame.is_none();
-        let tcp = match self.state.tcp {
-            Tcp::Transformation => "TRAORI",
-            Tcp::Vector => "G43.5",
-            _ if is_heidenhain => "M128",
-            _ if self.transformed => "M428",
-            _ => "G43.4",
-        };
-        let words = [
-            (self.modal.incremental && !is_linuxcnc, "G91"),
-            (has_shift, shift),
-            (is_rotated, rotation),
-            (self.polar.is_some(), "G16"),
-            (self.mirror != [None; 3], "G51.1"),
-            (self.is_tcp(), tcp),
-        ];
-        let words = words.into_iter().filter(|(is_left, _)| *is_left);
-        let cycle = self.modal.cycle().map(|number| format!("G{number} without G80"));
-        words.map(|(_, word)| word.to_owned()).chain(cycle).collect()
     }
 
     /// Returns the remedy that ends tool centre point control.
@@ -827,175 +514,4 @@ impl Control {
 /// Returns two coordinates of a position, if both are known.
 fn in_plane(position: &Position, axes: [usize; 2]) -> Option<[f64; 2]> {
     Some([position[axes[0]]?, position[axes[1]]?])
-}
-
-impl Modal {
-    fn new() -> Modal {
-        Modal {
-            motion: None,
-            path: None,
-            plane: Plane::Xy,
-            unit: Unit::Millimetre,
-            unit_stated: false,
-            incremental: false,
-            absolute_centres: None,
-            feed_mode: FeedMode::PerMinute,
-            feed: None,
-            exact_path: false,
-            retract_to_r: None,
-        }
-    }
-
-    /// Returns the number of the canned cycle in force.
-    fn cycle(&self) -> Option<u32> {
-        match self.motion {
-            Some(Motion::Cycle(number)) => Some(number),
-            _ => None,
-        }
-    }
-
-    /// Returns whether axis words move at feed rate, at last.
-    fn is_feed(&self) -> bool {
-        !matches!(self.motion, None | Some(Motion::Rapid))
-    }
-
-    /// Returns the least increment of a length, in the unit of the program.
-    pub(super) fn increment(&self) -> f64 {
-        if self.unit == Unit::Inch { 1e-4 } else { 1e-3 }
-    }
-
-    /// Converts a length of the program to millimetres.
-    fn millimetres(&self, length: f64) -> f64 {
-        length * self.unit.millimetres()
-    }
-}
-
-/// Takes the words of a path mode.
-fn path_control(block: &mut Block, code: Code) -> Result<(), GcodeFault> {
-    let switch = match code.tenths {
-        640 | 1870 => {
-            block.take('P');
-            // The tolerance of Haas is E.
-            block.take(if code.tenths == 640 { 'Q' } else { 'E' });
-            return Ok(());
-        }
-        610 | 611 => return Ok(()),
-        51 => 'Q',
-        _ => 'P',
-    };
-    // Fanuc's modes G5 P, G5.1 Q and G8 P. With axis words they are splines, without any a mode of a lathe.
-    match block.take(switch) {
-        Some(_) if !block.has_any("XYZIJK") => Ok(()),
-        _ => {
-            let meaning = "a spline, or a mode of a lathe, without the word of its path mode";
-            let remedy = "post the program with lines and arcs";
-            Err(not_read(code, meaning, remedy))
-        }
-    }
-}
-
-impl SpindleWords {
-    fn new() -> SpindleWords {
-        SpindleWords {
-            turn: Spindle::NotStated,
-            speed: None,
-            paused: false,
-            rigid: false,
-            tapping: None,
-        }
-    }
-}
-
-impl Control {
-    /// Reads S and the words of the spindle, and returns the word that changes whether and how it turns, if there is one.
-    fn spindle_words(&mut self, block: &mut Block) -> Option<String> {
-        let before = self.spindle;
-        let mut word = None;
-        if let Some(speed) = block.take('S') {
-            self.spindle.speed = Some(speed);
-            // From one speed to another it turns on. S0 stops it, and S after that starts it.
-            let stood = before.speed.is_none_or(|speed| speed == 0.0);
-            let is_on = matches!(before.turn, Spindle::Clockwise | Spindle::CounterClockwise);
-            word = (is_on && stood != (speed == 0.0)).then(|| "S".to_owned());
-        }
-        let dialect = self.stated(Rule::Dialect);
-        let stops_at_m89 =
-            matches!(dialect, None | Some(Choice::Iso)) && self.spindle.turn != Spindle::NotStated;
-        for code in &block.passed_over {
-            let turn = match (code.letter, code.tenths) {
-                ('M', 30) => Spindle::Clockwise,
-                ('M', 40) => Spindle::CounterClockwise,
-                ('M', 50 | 190) => {
-                    self.spindle.rigid = false;
-                    Spindle::Stopped
-                }
-                // Haas stops it before M89 (coolant through the spindle off), and does not start it again.
-                ('M', 890) if !stops_at_m89 => continue,
-                ('M', 890) => Spindle::Stopped,
-                ('M', 290) => {
-                    self.spindle.rigid = true;
-                    continue;
-                }
-                _ => continue,
-            };
-            (self.spindle.turn, self.spindle.paused) = (turn, false);
-            self.spindle.tapping = None;
-            if (turn, false) != (before.turn, before.paused) {
-                word = Some(code.to_string());
-            }
-        }
-        word
-    }
-
-    /// Notes a stop of the program (M0, M1).
-    pub(super) fn pause_spindle(&mut self) {
-        self.spindle.paused = true;
-    }
-
-    /// Returns whether a tapping cycle finds the spindle as it needs it: turning into its thread, unless the cycle turns it itself
-    /// (M29), or the same cycle was before.
-    fn can_tap(&mut self, number: u32) -> bool {
-        let wanted = if number == 84 { Spindle::Clockwise } else { Spindle::CounterClockwise };
-        let spindle = self.spindle(false);
-        self.spindle.rigid || spindle == wanted || self.spindle.tapping == Some(number)
-    }
-
-    /// Notes the end of a tapping cycle.
-    fn end_tapping(&mut self, number: u32) {
-        self.spindle.turn = Spindle::AfterTapping;
-        self.spindle.tapping = Some(number).filter(|_| !self.spindle.rigid);
-    }
-
-    /// Stops the spindle for a tool change. It stays unstated if it was.
-    fn stop_spindle(&mut self) {
-        self.spindle.rigid = false;
-        self.spindle.tapping = None;
-        // A program that leaves the spindle to the operator does so after the change, too.
-        if self.spindle.turn != Spindle::NotStated {
-            self.spindle.turn = Spindle::Stopped;
-        }
-    }
-
-    /// Returns the spindle for a motion at feed rate or in rapid traverse.
-    fn spindle(&mut self, rapid: bool) -> Spindle {
-        if matches!(
-            self.spindle.turn,
-            Spindle::NotStated | Spindle::Stopped | Spindle::AfterTapping
-        ) {
-            return self.spindle.turn;
-        }
-        // The state after the stop matters at the next feed, and the rule is asked there only.
-        if self.spindle.paused && !rapid {
-            self.spindle.paused = false;
-            if self.choice(Rule::Stop) == Choice::StopsSpindle {
-                self.spindle.turn = Spindle::Stopped;
-                return Spindle::Stopped;
-            }
-        }
-        match self.spindle.speed {
-            None => Spindle::WithoutSpeed,
-            Some(0.0) => Spindle::Stopped,
-            Some(_) => self.spindle.turn,
-        }
-    }
 }

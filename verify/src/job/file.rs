@@ -401,8 +401,11 @@ impl JobFile {
             if let Some(tool) = entry.tool.as_mut().filter(|tool| has_ending(tool, "tool")) {
                 *tool = folder.join(&*tool);
             }
-            if let Some(name) = entry.name.clone().filter(|name| !tool_names.insert(name.clone())) {
-                return Err(refused(JobFileFault::SecondToolName { name }));
+            // Programs select them in either case.
+            if let Some(name) = &entry.name
+                && !tool_names.insert(name.to_ascii_lowercase())
+            {
+                return Err(refused(JobFileFault::SecondToolName { name: name.clone() }));
             }
             if entries.insert(number, entry).is_some() {
                 return Err(refused(JobFileFault::SecondTool { number }));

@@ -274,6 +274,11 @@ impl<T: AsRef<dyn Tool>> JobInputs<T> {
             return Err(refused(JobFileFault::SeveralStocks));
         }
         let gap = match report.verdict() {
+            // What its own `anyway` has accepted is said.
+            Verdict::Clean if report.is_lenient() => {
+                let gap = JobGap::AcceptedSetup { file: name() };
+                Some(Gap::said(0, gap.code(), gap.to_string()))
+            }
             Verdict::Clean => None,
             verdict => {
                 let mut gap = JobGap::EarlierSetup { file: name() }.open(0);

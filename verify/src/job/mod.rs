@@ -838,6 +838,16 @@ faults! {
              tilted, or state `[tool.0]` with the shape of the spindle's nose and `length = 0`"
         )]
         LowSpindle { name: String },
+        /// An earlier set-up whose own file accepts what is left open.
+        ///
+        /// A verdict is possible.
+        #[code = V0611]
+        #[error("the set-up before, whose stock this is, leaves something open, which {file} accepts by `anyway`")]
+        AcceptedSetup { file: String },
+        /// A motion aside at the top of Z's travel, of a tool whose length is not stated, over something that is higher than its tip as drawn.
+        #[code = V0612]
+        #[error("at the top of Z, T{tool} reaches lower than {name}, by its drawing: state its `length`, with which its motions there are checked")]
+        LowTop { name: String, tool: u32 },
     }
 }
 
@@ -1012,6 +1022,15 @@ impl std::fmt::Debug for JobTool<'_> {
 }
 
 impl JobStock {
+    /// Returns the lowest and the highest corner of its box before the program.
+    fn bounds(&self) -> [Point3<f64>; 2] {
+        match &self.shape {
+            StockShape::Box(corners) => *corners,
+            StockShape::Mesh(mesh) => mesh.bounds(),
+            StockShape::Points(points) => points.bounds(),
+        }
+    }
+
     /// Makes the stock.
     fn build(&self, unit: Unit) -> Result<Stock, StockError> {
         match &self.shape {

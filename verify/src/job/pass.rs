@@ -6,7 +6,7 @@ use super::machine::MachineFinding;
 use super::program::BlockMoves;
 use super::report::{JobReport, Moving, PairReport, Remedy};
 use super::stock::{CutStock, StockCut};
-use super::{Body, BodyFrame, BodyRole, Job, JobError, JobGap, JobTool, STOCK, StockShape};
+use super::{Body, BodyFrame, BodyRole, Job, JobError, JobGap, JobStock, JobTool, STOCK};
 use crate::check::{ApproachSearch, MoveCheck, MoveRequest};
 use crate::gcode::{BlockLine, WorkOffset};
 use crate::machine::{Axis, Link, Machine, Side};
@@ -113,12 +113,6 @@ impl<'a> Job<'a> {
             gap.reason += &self.program.name_within(block.within);
             gap
         };
-        let mut readings = self.program.readings().iter();
-        if let (Some(block), Some(_)) =
-            (readings.find_map(|reading| reading.summary().any_rapid), &self.stock)
-        {
-            gaps.push(open(block, &JobGap::StockRapid));
-        }
         for (block, gap) in self.low_ways() {
             let gap = open(block, &gap);
             if !gaps.contains(&gap) {
@@ -130,8 +124,8 @@ impl<'a> Job<'a> {
             pairs.extend(result.pairs);
             let far = result.far_offsets.into_iter();
             let far = far.map(|(offset, block)| (block, JobGap::FarOffset { offset }));
-            let thin = result.cut.iter().flat_map(|cut| cut.too_thin.iter().cloned());
-            for (block, gap) in far.chain(thin) {
+            let of_stock = result.cut.iter().flat_map(|cut| cut.open.iter().cloned());
+            for (block, gap) in far.chain(of_stock) {
                 let gap = open(block, &gap);
                 if !gaps.contains(&gap) {
                     gaps.push(gap);
@@ -149,13 +143,10 @@ impl<'a> Job<'a> {
     /// Returns the ways of each reading that are lower than a body or the stock: those to the first position and to a reference position
     /// that is not known, of which X and Y are not known at one of their ends, and so what is between, and those of an empty spindle.
     fn low_ways(&self) -> impl Iterator<Item = (BlockLine, JobGap)> + '_ {
-        let stock = self.stock.as_ref().map(|stock| match &stock.shape {
-            StockShape::Box(corners) => *corners,
-            StockShape::Mesh(mesh) => mesh.bounds(),
-            StockShape::Points(points) => points.bounds(),
-        });
+        let stock = self.stock.as_ref().map(JobStock::bounds);
         self.program.readings().iter().flat_map(move |reading| {
-            let MachineSummary { blind_ways, ways_home, empty_ways, .. } = reading.summary();
+            let MachineSummary { blind_ways, ways_home, empty_ways, top_ways, .. } =
+                reading.summary();
             // A tool may touch what it passes over, and the nose of a spindle may not.
             let kinds: [(_, NamedGap, _); 3] = [
                 (blind_ways, |name| JobGap::LowWay { name }, LEVEL_ROUNDING),
@@ -165,9 +156,19 @@ impl<'a> Job<'a> {
             let ways = kinds.into_iter().flat_map(|(ways, gap, least)| {
                 ways.iter().map(move |(block, way)| (*block, way, gap, least))
             });
-            ways.filter_map(move |(block, way, gap, least)| {
+            let low = ways.filter_map(move |(block, way, gap, least)| {
                 Some((block, gap(self.highest_above(way, stock, least)?.to_owned())))
-            })
+            });
+            // The tip of a tool of unknown length is at least as low as the tool is drawn.
+            let at_top = top_ways.iter().filter_map(move |(block, number, way)| {
+                let info = self.tool_of(Some(*number))?.tool.info();
+                let mut way = way.clone();
+                let drawn = info.reach().high * info.unit.millimetres();
+                way.levels.iter_mut().for_each(|level| level.height -= drawn);
+                let name = self.highest_above(&way, stock, LEVEL_ROUNDING)?.to_owned();
+                Some((*block, JobGap::LowTop { name, tool: *number }))
+            });
+            low.chain(at_top)
         })
     }
 
@@ -322,7 +323,8 @@ impl<'a> Job<'a> {
                 _ => verifier.max_depths()?,
             };
             known = Some((pair.moving, max_depths.clone()));
-            checks.push(MoveCheck::new(verifier, max_depths)?);
+            let check = MoveCheck::new(verifier, max_depths)?;
+            checks.push(check.with_other_parts(self.bodies.iter().filter_map(|b| b.work_offset)));
         }
         let offsets = match self.program.readings().get(reading) {
             Some(program) if program.summary().work_offsets.len() > 1 => {

@@ -5,7 +5,7 @@ use super::stock::{CutStock, StockFinding};
 use super::{Body, FindingRule, Job, JobTool, RevolvedBody};
 use crate::codes::faults;
 use crate::gcode::SubprogramLine;
-use crate::{FindingGroup, Gap, GapWeight, Tilt, VerifyReport};
+use crate::{Approach, FindingGroup, Gap, GapWeight, Tilt, VerifyReport};
 use std::fmt;
 use touchoff::Tool;
 use touchoff::tool::ToolInfo;
@@ -207,9 +207,17 @@ impl JobReport<'_> {
 
     /// Returns whether the program seems to be in another unit than the part, so that findings mean nothing.
     fn is_misplaced(&self) -> bool {
-        let at_part = |pair: &&PairReport| self.is_tool_at_part(pair) && pair.body == 0;
-        let mut parts = self.pairs.iter().filter(at_part);
-        !self.job.anyway && parts.any(|pair| pair.report.approach.unit_factor.is_some())
+        let mut readings = 0..self.job.program.reading_count();
+        !self.job.anyway && readings.any(|reading| self.unit_factor(reading).is_some())
+    }
+
+    /// Returns the factor of a unit by which the positions of all tools in a reading would fit the part much better.
+    fn unit_factor(&self, reading: usize) -> Option<f64> {
+        let at_part = |pair: &&PairReport| {
+            pair.reading == reading && self.is_tool_at_part(pair) && pair.body == 0
+        };
+        let tools = self.pairs.iter().filter(at_part);
+        Approach::unit_factor_of(tools.map(|pair| &pair.report.approach))
     }
 
     /// Returns whether the inside of a body is unknown, and only its surface was to be checked.
@@ -219,9 +227,19 @@ impl JobReport<'_> {
 
     /// Returns the reasons for which a result without findings proves nothing.
     pub fn refusals(&self) -> Vec<NoVerdict> {
+        self.refusals_if(self.job.anyway)
+    }
+
+    /// Returns whether the job has accepted a reason for which there would be no verdict.
+    pub(super) fn is_lenient(&self) -> bool {
+        self.job.anyway && !self.refusals_if(false).is_empty()
+    }
+
+    /// Returns the reasons for which a result without findings proves nothing, if the job accepts what is left open or not.
+    fn refusals_if(&self, anyway: bool) -> Vec<NoVerdict> {
         let open = self.gaps.iter().filter(|gap| match gap.weight {
             GapWeight::Stops => true,
-            GapWeight::Open => !self.job.anyway,
+            GapWeight::Open => !anyway,
             GapWeight::Said => false,
         });
         let mut reasons: Vec<NoVerdict> = open
@@ -243,7 +261,7 @@ impl JobReport<'_> {
                 continue;
             }
             let touches_stock = self.cuts.get(reading).is_some_and(|cut| !cut.findings.is_empty());
-            for reason in self.implausibilities(&pairs, touches_stock) {
+            for reason in self.implausibilities(&pairs, touches_stock, anyway) {
                 if !reasons.contains(&reason) {
                     reasons.push(reason);
                 }
@@ -256,7 +274,12 @@ impl JobReport<'_> {
     }
 
     /// Returns the reasons to doubt that the motions of a reading are meant for these bodies.
-    fn implausibilities(&self, pairs: &[&PairReport], touches_stock: bool) -> Vec<NoVerdict> {
+    fn implausibilities(
+        &self,
+        pairs: &[&PairReport],
+        touches_stock: bool,
+        anyway: bool,
+    ) -> Vec<NoVerdict> {
         let mut reasons = Vec::new();
         for pair in pairs {
             if !pair.report.inside_known && !self.job.surface_only {
@@ -264,7 +287,7 @@ impl JobReport<'_> {
             }
             if pair.report.unrestricted {
                 reasons.push(NoVerdict::Unrestricted);
-            } else if !self.job.anyway && !pair.report.unchecked_surfaces.is_empty() {
+            } else if !anyway && !pair.report.unchecked_surfaces.is_empty() {
                 let info = self.info(pair);
                 let names = pair.report.unchecked_surfaces.iter();
                 let names = names.map(|surface| &*info.surface(*surface).name);
@@ -276,13 +299,11 @@ impl JobReport<'_> {
         let parts = || pairs.iter().filter(|pair| self.is_tool_at_part(pair));
         // A program that touches a fixture or the stock is meant for this setup.
         let touches = touches_stock || pairs.iter().any(|pair| !pair.groups.is_empty());
-        if !self.job.anyway && !touches && parts().all(|pair| pair.report.approach.is_far()) {
+        if !anyway && !touches && parts().all(|pair| pair.report.approach.is_far()) {
             reasons.push(NoVerdict::Far);
         }
-        // The positions for other parts are outside the box of each.
-        let mut first = parts().filter(|pair| pair.body == 0);
-        let factor = first.find_map(|pair| pair.report.approach.unit_factor);
-        if let (false, Some(factor)) = (self.job.anyway, factor) {
+        let factor = pairs.first().and_then(|pair| self.unit_factor(pair.reading));
+        if let (false, Some(factor)) = (anyway, factor) {
             reasons.push(NoVerdict::OtherUnit { factor });
         }
         reasons

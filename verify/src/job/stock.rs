@@ -1,9 +1,9 @@
 //! The program against the material that is still there.
 
 use super::{Job, JobError, JobGap, JobStock, JobTool, STOCK};
-use crate::Move;
 use crate::gcode::BlockLine;
 use crate::stock::{self, DeviationPoint, MotionMode, Stock, StockContact};
+use crate::{Move, MovePath};
 use nalgebra::Point3;
 use serde::Serialize;
 use touchoff::Unit;
@@ -49,8 +49,9 @@ pub struct CutStock {
     /// The thickness from which a layer is found for certain by every tool that has moved in it, in the part's unit; infinite if
     /// none is.
     pub found_layer: f64,
-    /// The tools that can pass through material between its points: the block of the first motion, and the gap.
-    pub(super) too_thin: Vec<(BlockLine, JobGap)>,
+    /// What is left open, each with its block: tools that can pass through material between its points, and rapid traverse of several axes
+    /// that may pass through the stock.
+    pub(super) open: Vec<(BlockLine, JobGap)>,
 }
 
 /// A finding as a JSON object.
@@ -77,6 +78,8 @@ pub(super) struct StockRow<'a> {
 pub(super) struct StockCut {
     cut: CutStock,
     unit: Unit,
+    /// The box of the stock before the program.
+    bounds: [Point3<f64>; 2],
     /// The index of the finding that each surface goes on with.
     open: Vec<(usize, usize)>,
     /// The tools that have moved, by their numbers.
@@ -95,8 +98,9 @@ impl StockCut {
         let tolerance = entry.tolerance.unwrap_or(stock.step());
         let found_layer = stock.found_layer(tolerance);
         let cut =
-            CutStock { findings: Vec::new(), stock, tolerance, found_layer, too_thin: Vec::new() };
-        Ok(StockCut { cut, unit: job.unit(), open: Vec::new(), seen: Vec::new() })
+            CutStock { findings: Vec::new(), stock, tolerance, found_layer, open: Vec::new() };
+        let bounds = entry.bounds();
+        Ok(StockCut { cut, unit: job.unit(), bounds, open: Vec::new(), seen: Vec::new() })
     }
 
     /// Notes the layer that a tool finds for certain, and that it is more than twice as thick as that of a wide tool.
@@ -105,7 +109,7 @@ impl StockCut {
             return;
         }
         self.seen.push(tool.number());
-        let CutStock { stock, tolerance, found_layer, too_thin, .. } = &mut self.cut;
+        let CutStock { stock, tolerance, found_layer, open, .. } = &mut self.cut;
         let info = tool.tool.info();
         let layer = stock.found_layer_of(tool.tool, *tolerance);
         *found_layer = found_layer.max(layer.unwrap_or(f64::INFINITY));
@@ -118,7 +122,7 @@ impl StockCut {
                 None => "of any thickness".to_owned(),
             };
             let spacing = unit.format(stock.spacing());
-            too_thin.push((block, JobGap::ThinTool { name, spacing, found }));
+            open.push((block, JobGap::ThinTool { name, spacing, found }));
         }
     }
 
@@ -131,8 +135,18 @@ impl StockCut {
         if step.alternative {
             return Ok(());
         }
-        let CutStock { findings, stock, tolerance, .. } = &mut self.cut;
+        let CutStock { findings, stock, tolerance, open, .. } = &mut self.cut;
         let info = tool.tool.info();
+        // Only the straight path is run through the stock. At other rates the tool is anywhere in the box.
+        if let MovePath::Box(path) = &step.path
+            && open.iter().all(|(_, gap)| !matches!(gap, JobGap::StockRapid))
+        {
+            let [low, high] = path.tool_bounds(info, self.unit);
+            let [from, to] = self.bounds;
+            if (0..3).all(|k| low[k] <= to[k] && from[k] <= high[k]) {
+                open.push((step.block(), JobGap::StockRapid));
+            }
+        }
         let max_speed = step.path.max_speed(info, self.unit);
         // Nothing led to the first position, so it cuts nothing there.
         let is_rapid = step.rapid || step.from.is_none();

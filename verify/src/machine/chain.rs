@@ -215,6 +215,14 @@ impl Chain {
         chain
     }
 
+    /// Returns the chain without the lower limit of Z, which the tip of a tool of unknown length may pass.
+    #[must_use]
+    pub fn without_lower_z_limit(&self) -> Chain {
+        let mut chain = *self;
+        chain.limits[2][0] = f64::NEG_INFINITY;
+        chain
+    }
+
     /// Returns the chain to the point of the tool axis that is below the tip by a distance, in mm.
     ///
     /// # Errors

@@ -111,9 +111,9 @@ faults! {
     #[derive(Clone, PartialEq, thiserror::Error)]
     #[non_exhaustive]
     pub enum ProgramFault {
-        /// A byte that is no part of a UTF-8 text, or is NUL.
+        /// A NUL, which no text has.
         #[code = P0501]
-        #[error("byte {byte} of the file is NUL or not UTF-8 text: save it as UTF-8 (not UTF-16 or Latin-1)")]
+        #[error("byte {byte} of the file is NUL: save it as text in UTF-8 or Windows-1252 (not UTF-16)")]
         NotText {
             /// Its offset in the file, from 0.
             byte: usize,

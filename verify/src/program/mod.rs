@@ -21,6 +21,7 @@ pub use cutter::Cutter;
 pub use error::{ProgramError, ProgramFault};
 pub use write::{AptHeader, Decimals, WriteError, apt_unit};
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use nalgebra::{Point3, Vector3};
@@ -77,7 +78,7 @@ impl ProgramFile {
     /// If the content is not text, or as for [`ClData::parse_tools`].
     pub fn parse(content: impl AsRef<[u8]>, name: &str) -> Result<ProgramFile, ProgramError> {
         match decode(content.as_ref()) {
-            Ok(text) if is_gcode(text) => Ok(ProgramFile::Gcode(text.to_owned())),
+            Ok(text) if is_gcode(&text) => Ok(ProgramFile::Gcode(text.into_owned())),
             _ => ClData::parse_tools(content, name).map(ProgramFile::Locations),
         }
     }
@@ -91,7 +92,7 @@ pub(crate) fn read_text(path: &Path) -> Result<String, ProgramError> {
     let file = path.display().to_string();
     match read_regular_file(path, FileKind::Program) {
         Ok(bytes) => match decode(&bytes) {
-            Ok(text) => Ok(text.to_owned()),
+            Ok(text) => Ok(text.into_owned()),
             Err((line, fault)) => Err(ProgramError::Line { file, line, fault, others: Vec::new() }),
         },
         Err(source) => Err(ProgramError::Read { file, source }),
@@ -316,6 +317,7 @@ fn begins_call(line: &str) -> bool {
 /// Decodes bytes as text, and reads its positions.
 fn assemble(bytes: &[u8]) -> Result<Tapes, Faults> {
     let text = decode(bytes).map_err(|fault| vec![fault])?;
+    let text: &str = &text;
     let Some((line, first)) = lines(text).find(|(_, line)| !is_comment(line)) else {
         return Ok(Tapes::default());
     };
@@ -329,17 +331,36 @@ fn assemble(bytes: &[u8]) -> Result<Tapes, Faults> {
     }
 }
 
-/// Returns the text without its byte-order mark. A NUL is refused, since it reveals UTF-16 without a mark.
-fn decode(bytes: &[u8]) -> Result<&str, Located> {
-    let invalid_byte = match std::str::from_utf8(bytes) {
-        Ok(text) => match text.find('\0') {
-            None => return check_characters(text.strip_prefix('\u{feff}').unwrap_or(text)),
-            Some(byte) => byte,
-        },
-        Err(error) => error.valid_up_to(),
-    };
-    let line = lines(&String::from_utf8_lossy(&bytes[..invalid_byte])).count();
-    Err((line, ProgramFault::NotText { byte: invalid_byte }))
+/// Returns the text without its byte-order mark. What is not UTF-8 is read as Windows-1252, as posts write it: its letters can stand in
+/// comments and names alone, where other code pages give other letters. A NUL is refused, since it reveals UTF-16.
+fn decode(bytes: &[u8]) -> Result<Cow<'_, str>, Located> {
+    if let Some(byte) = bytes.iter().position(|byte| *byte == 0) {
+        let line = lines(&String::from_utf8_lossy(&bytes[..byte])).count();
+        return Err((line, ProgramFault::NotText { byte }));
+    }
+    match std::str::from_utf8(bytes) {
+        Ok(text) => {
+            check_characters(text.strip_prefix('\u{feff}').unwrap_or(text)).map(Cow::Borrowed)
+        }
+        Err(_) => {
+            let text: String = bytes.iter().map(|byte| windows_1252(*byte)).collect();
+            check_characters(&text)?;
+            Ok(Cow::Owned(text))
+        }
+    }
+}
+
+/// The characters of Windows-1252 from 0x80 to 0x9F. Those that it lacks are control characters.
+const WINDOWS_1252: &str = "€\u{81}‚ƒ„…†‡ˆ‰Š‹Œ\u{8d}Ž\u{8f}\u{90}‘’“”•–—˜™š›œ\u{9d}žŸ";
+
+/// Returns the character of a byte in Windows-1252.
+fn windows_1252(byte: u8) -> char {
+    match byte {
+        0x80..=0x9f => {
+            WINDOWS_1252.chars().nth(usize::from(byte - 0x80)).unwrap_or(char::from(byte))
+        }
+        _ => char::from(byte),
+    }
 }
 
 /// Returns the text, if no character in it hides a line from a reader or shows a line that is none.

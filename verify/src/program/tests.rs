@@ -87,11 +87,9 @@ fn refuses_what_is_neither_format() {
     }
     assert_eq!(refusal("G0 X1 Y-2.5\nM30\n"), (1, "P0513"));
     assert_eq!(refusal("\n%\nO1000\n"), (2, "P0502"));
-    for (content, line, byte) in [
-        (&b"1,2,3,0,0,1\r\n# caf\xe9\n"[..], 2, 18),
-        (&b"\xff\xfe1\0"[..], 1, 0),
-        (&b"1\0,\0"[..], 1, 1),
-    ] {
+    for (content, line, byte) in
+        [(&b"\xff\xfe1\0"[..], 1, 3), (&b"1,2,3,0,0,1\r\n1\0,\0"[..], 2, 14)]
+    {
         let error = ClData::parse(content, "part.cl").expect_err("no text");
         let ProgramError::Line { line: found, fault, .. } = error else { panic!("{error}") };
         assert_eq!((found, fault), (line, ProgramFault::NotText { byte }));

@@ -22,9 +22,7 @@ pub struct MachineSummary {
     pub unchecked_tools: Vec<(u32, BlockLine)>,
     /// Motions that are not checked, by their cause.
     pub unknown: Vec<UnknownMotions>,
-    /// The block of the first motion in rapid traverse of several axes at rates that are not known.
-    pub any_rapid: Option<BlockLine>,
-    /// As before, for a motion of which one axis is rotary. Only its straight path is checked.
+    /// The first block in rapid traverse at rates that are not known of which one axis is rotary. Only its straight path is checked.
     pub any_rotary_rapid: Option<BlockLine>,
     /// The spindle during motions at feed rate, without those of taps: the line of the first by tool and spindle.
     pub spindle: Vec<(BlockLine, Option<u32>, Spindle)>,
@@ -41,6 +39,9 @@ pub struct MachineSummary {
     pub ways_home: Vec<(BlockLine, BlindWay)>,
     /// The blocks of motions of an empty spindle, with the level of its gauge point: the lowest of each direction.
     pub empty_ways: Vec<(BlockLine, BlindWay)>,
+    /// The first block with a motion aside at the top of Z's travel for each tool whose length is not known, with the level of the
+    /// spindle's gauge point.
+    pub top_ways: Vec<(BlockLine, u32, BlindWay)>,
     /// The block of the first motion of an empty spindle.
     pub first_empty: Option<BlockLine>,
     /// The number of motions of an empty spindle whose ends are known.
@@ -66,6 +67,8 @@ pub struct MachineSummary {
     pub limits: Vec<(BlockLine, LimitViolation)>,
     /// Set if the machine states limits of X, Y or Z that are not checked.
     pub limits_unchecked: bool,
+    /// The first block with a tool whose length is not known, if the machine states limits of Z: its upper one is not checked.
+    pub z_limit_unchecked: Option<BlockLine>,
     /// The first block with a turned axis whose direction is that of ISO 841, as no control is stated.
     pub(crate) direction_assumed: Option<BlockLine>,
     /// Singular passes, each with its line.
@@ -441,6 +444,12 @@ faults! {
              tool has this number"
         )]
         EmptySpindle,
+        /// The upper limit of Z, where the length of a tool is not stated.
+        ///
+        /// The axis is higher than the tip by the length. What is certainly beyond it is a finding. A verdict is possible.
+        #[code = V0313]
+        #[error("the upper limit of Z is checked for the tip alone, as the tool's length is not known: state its `length`")]
+        UpperLimit,
     }
 }
 
@@ -546,6 +555,19 @@ impl MachineSummary {
         let is_tip = off_is_tip || step.state.tool.is_none() && unnamed_tool.is_none();
         if is_tip && step.state.length == LengthOffset::Off {
             self.no_rapid_offset.get_or_insert(step.block());
+        }
+    }
+
+    /// Adds a way of a tool of unknown length at the top of Z's travel: the lowest level of each tool is kept.
+    pub(super) fn add_top_way(
+        ways: &mut Vec<(BlockLine, u32, BlindWay)>,
+        block: BlockLine,
+        tool: u32,
+        way: BlindWay,
+    ) {
+        match ways.iter_mut().find(|(_, known, _)| *known == tool) {
+            Some((_, _, known)) => known.levels = Level::lower(&known.levels, &way.levels),
+            None => ways.push((block, tool, way)),
         }
     }
 
@@ -695,6 +717,8 @@ impl MachineSummary {
         }
         if self.limits_unchecked {
             gaps.push(said(BlockLine::from(0), CheckGap::Limits));
+        } else if let Some(block) = self.z_limit_unchecked {
+            gaps.push(said(block, CheckGap::UpperLimit));
         }
         for note in &self.notes {
             let weight = match note.kind {

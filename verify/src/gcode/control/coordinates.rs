@@ -66,8 +66,12 @@ impl Control {
         // D of G41.1 and G42.1 is a diameter.
         let has_diameter = matches!(compensation, 411 | 421);
         if !has_diameter && let Some(edge) = block.take_whole('D', 0, MAX_REGISTER, expected)? {
-            // D holds for the tool after the change, where D1 is in force anyway.
-            let is_staged = self.staged.is_some() && self.staged != self.state.tool;
+            // D in the block of T or M6 holds for the tool after the change, where D1 is in force anyway. In a block of its own it is that
+            // of the tool in the spindle on Sinumerik, whatever tool the changer prepares.
+            let is_native = self.stated(Rule::Dialect) == Some(Choice::Sinumerik);
+            let is_staged = self.staged.is_some()
+                && self.staged != self.state.tool
+                && !(is_native && self.state.tool.is_some());
             let is_between = (edge != 1 || self.length_cancelled)
                 && (has_tool || has_change || is_staged)
                 && self.choice(Rule::ToolLength) == Choice::Always;

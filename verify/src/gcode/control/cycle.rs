@@ -198,6 +198,12 @@ impl Control {
         Err(combination(word, condition, remedy))
     }
 
+    /// Returns whether the control is one that repeats a cycle by L, so that it has another meaning for K (Haas).
+    fn repeats_by_l(&self) -> bool {
+        self.stated(Rule::Dialect) == Some(Choice::Iso)
+            && self.stated(Rule::CycleRepeats) == Some(Choice::RepeatsByL)
+    }
+
     /// Takes the words of the cycle. Those that are missing are the ones of the cycle before.
     fn cycle_words(&self, block: &mut Block, number: u32, word: &str) -> Result<Cycle, GcodeFault> {
         let known = self.cycle.as_ref();
@@ -224,7 +230,18 @@ impl Control {
         let depth = self.take_length(block, AXES[normal]).or(usable.map(|cycle| cycle.depth));
         let retract = self.take_length(block, 'R').or(usable.map(|cycle| cycle.retract));
         let peck = match number {
+            // The first peck of Haas, by how much less each of the next is, and the least: all on the way of a hole.
+            73 | 83 if block.has('I') && self.repeats_by_l() => {
+                block.take('J');
+                block.take('K');
+                block.take('Q');
+                self.take_length(block, 'I')
+            }
             73 | 74 | 83 | 84 => {
+                // How much faster Haas retracts from a tapped hole.
+                if number == 84 && self.repeats_by_l() {
+                    block.take('J');
+                }
                 self.take_length(block, 'Q').or(known.and_then(|cycle| cycle.peck))
             }
             _ => known.and_then(|cycle| cycle.peck),

@@ -2,7 +2,7 @@
 //!
 //! A subprogram of another file has a flow of its own, which its caller's flow waits for.
 
-use super::line::{Label, MacroCall, Role, begin, code, next};
+use super::line::{Label, MacroCall, Role, begin, begins_title, code, next};
 use super::structure::{Structure, Subprogram};
 use super::variables::{Locals, Variables};
 use crate::gcode::error::combination;
@@ -151,7 +151,7 @@ impl<'a> Source<'a> {
         let mut place = self.extent.start;
         while let Some((found, after)) = line(self.text(), place) {
             match next(&mut begin(found)) {
-                Ok(Some(b'O' | b'o' | b':')) => return after,
+                Ok(Some(byte)) if begins_title(byte) => return after,
                 Ok(None) => place = after,
                 _ => break,
             }
@@ -431,7 +431,7 @@ impl<'a> Flow<'a> {
             let mut cursor = begin(line);
             match next(&mut cursor) {
                 // Subprograms are read before, and another program has a note of its own.
-                Ok(Some(b'O' | b'o')) => return None,
+                Ok(Some(byte)) if begins_title(byte) => return None,
                 Ok(None) => place = after,
                 _ => return Some(place.line),
             }
@@ -439,20 +439,31 @@ impl<'a> Flow<'a> {
         None
     }
 
-    /// Returns the line of the title of another main program after the present one: one that ends as such.
+    /// Returns the line of the title of another main program of the file than the first: one that was not called and ends as such.
     pub(super) fn other_program(&self) -> Option<usize> {
-        let mut place = if self.is_main() { self.place } else { return None };
-        let mut title = None;
-        while let Some((line, after)) = line(self.text(), place) {
-            let mut cursor = begin(line);
-            if let Ok(Some(b'O' | b'o')) = next(&mut cursor) {
-                title = Some(place.line);
-            } else if title.is_some() && ends_program(line) {
-                return title;
+        let source = &self.sources[0];
+        let structure = &source.structure;
+        let called = self.found.iter().filter_map(|label| structure.get(label));
+        let called: HashSet<usize> = called.map(|known| known.body.line).collect();
+        let first = source.body().line;
+        let ends = |title: &Place| {
+            let [_, last] = structure.program(title.line);
+            let mut place = *title;
+            while let Some((line, after)) =
+                line(source.text(), place).filter(|_| place.line <= last)
+            {
+                if ends_program(line) {
+                    return true;
+                }
+                place = after;
             }
-            place = after;
-        }
-        None
+            false
+        };
+        let others = structure
+            .titles
+            .iter()
+            .filter(|title| title.line >= first && !called.contains(&(title.line + 1)));
+        others.filter(|title| ends(title)).map(|title| title.line).next()
     }
 
     /// Notes that a block of the main program is executed.

@@ -6,13 +6,14 @@ use super::expression::{
     ExpressionFault, Language, Rounding, Value, begins_value, condition, value,
 };
 use super::flow::before_semicolon;
+use super::is_heidenhain;
 use super::variables::{Parameter, Scope, assignment};
 use crate::gcode::block::{Block, Code, Group, Keyword, Number};
 use crate::gcode::control::{Corner, CornerShape};
 use crate::gcode::cursor::Cursor;
 use crate::gcode::error::{combination, missing, not_read};
 use crate::gcode::rules::{Choice, Rule};
-use crate::gcode::{GcodeFault, LARGEST_NUMBER, MAX_ASSIGNMENTS, unquoted};
+use crate::gcode::{GcodeFault, LARGEST_NUMBER, MAX_ASSIGNMENTS, klartext, unquoted};
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -162,11 +163,13 @@ impl Line {
         let written = &text[..text.len() - cursor.rest().len()];
         // A word with a vacant variable is as if it were not written (Fanuc).
         let Some(value) = value else { return Ok(()) };
+        // M67 and M68 take it.
+        let is_linuxcnc = scope.control.stated(Rule::Dialect) == Some(Choice::Rs274Ngc);
         match letter {
             'G' | 'M' => self.code(letter, value, written, cursor, scope),
             // An argument of an ignored word.
             'E' if !self.ignored.is_empty() => Ok(()),
-            'E' if !self.is_smoothness() => Err(GcodeFault::Axis { word: letter }),
+            'E' if !self.is_smoothness() && !is_linuxcnc => Err(GcodeFault::Axis { word: letter }),
             'U' | 'V' | 'W' => Err(GcodeFault::Axis { word: letter }),
             'N' | 'O' => Err(GcodeFault::Unused { word: letter }),
             _ if value.abs() > LARGEST_NUMBER => Err(GcodeFault::TooLarge { word: letter }),
@@ -229,7 +232,12 @@ impl Line {
             return Err(GcodeFault::NotAllowed { word: letter, value, expected });
         }
         let code = Code { letter, tenths: tenths as u32 };
-        if scope.control.ignores(&code.to_string()) {
+        let word = code.to_string();
+        if scope.control.ignores(&word) {
+            if is_heidenhain(scope.control) && klartext::has_effect(&word) {
+                let meaning = "a word of Heidenhain that has an effect, and is not ignored";
+                return Err(not_read(code, meaning, "post the program without it"));
+            }
             self.ignored.push(code.to_string());
             return Ok(());
         }
@@ -727,9 +735,16 @@ pub(super) struct OWord {
     pub(super) role: Role,
 }
 
-/// Reads an O-word, or a title of Fanuc that begins with a colon. The label can be an expression. The arguments are left.
+/// Returns whether a line that begins with a byte can be a title or an O-word: `O1`, `:1`, or the name of a file, `<PART>` (Fanuc).
+pub(super) fn begins_title(byte: u8) -> bool {
+    matches!(byte, b'O' | b'o' | b':' | b'<')
+}
+
+/// Reads an O-word, or a title of Fanuc that begins with a colon or is a name. The label can be an expression. The arguments are left.
 pub(super) fn o_word(cursor: &mut Cursor, scope: &Scope) -> Result<OWord, GcodeFault> {
-    cursor.advance();
+    if cursor.byte() != Some(b'<') {
+        cursor.advance();
+    }
     let label = match cursor.take(b'<') {
         true => {
             let name = cursor.take_until('>').ok_or(ExpressionFault::OpenName)?;

@@ -27,7 +27,9 @@ use super::{ControlSetup, GcodeError, GcodeFault, Repeated, SubprogramFile, show
 use blank::{BlankLine, blank_line};
 use expression::{Language, Rounding, Value, condition, value};
 use flow::{Callee, Flow, Source, before_semicolon};
-use line::{Label, Line, MacroCall, OWord, Role, Statement, begin, check_end, next, o_word};
+use line::{
+    Label, Line, MacroCall, OWord, Role, Statement, begin, begins_title, check_end, next, o_word,
+};
 use std::mem;
 use structure::{Clause, Structure, Subprogram};
 use variables::{Locals, Parameter, Scope, Variables};
@@ -229,9 +231,10 @@ impl<'a> Program<'a> {
         check_text(text, control)?;
         let mut cursor = begin(text);
         let byte = next(&mut cursor)?;
-        let is_colon =
-            byte == Some(b':') && control.stated(Rule::Dialect) != Some(Choice::Rs274Ngc);
-        if matches!(byte, Some(b'O' | b'o')) || is_colon {
+        let is_linuxcnc = control.stated(Rule::Dialect) == Some(Choice::Rs274Ngc);
+        if byte
+            .is_some_and(|byte| begins_title(byte) && (!is_linuxcnc || byte.is_ascii_alphabetic()))
+        {
             self.o_word(&mut cursor, number, control)?;
             return Ok(Progress::GoesOn);
         }
@@ -376,6 +379,7 @@ impl<'a> Program<'a> {
                 self.variables.forget_returned();
                 if self.flow.is_main() && target.is_none() {
                     control.notes.add(control.block(), NoteKind::Endless);
+                    self.note_other_program(control);
                     return Ok(Progress::Ended);
                 }
                 match (target, self.flow.returns_to_file(), self.waiting.last_mut()) {
@@ -400,9 +404,7 @@ impl<'a> Program<'a> {
                 if let Some(line) = self.flow.text_after_end() {
                     control.notes.add(line.into(), NoteKind::TextAfterEnd);
                 }
-                if let Some(line) = self.flow.other_program() {
-                    control.notes.add(line.into(), NoteKind::OtherProgram);
-                }
+                self.note_other_program(control);
                 return Ok(Progress::Ended);
             }
             Some(_) => {
@@ -412,6 +414,13 @@ impl<'a> Program<'a> {
             None => {}
         }
         Ok(Progress::GoesOn)
+    }
+
+    /// Notes that the file has another program, which is not executed.
+    fn note_other_program(&self, control: &mut Control) {
+        if let Some(line) = self.flow.other_program() {
+            control.notes.add(line.into(), NoteKind::OtherProgram);
+        }
     }
 
     /// Assigns a variable.

@@ -1,7 +1,7 @@
 //! The structure of a text: its programs and subprograms, and the lines that belong to one decision or loop.
 
 use super::flow::{Place, line};
-use super::line::{Label, OWord, Role, begin, loop_number, next, o_word, statement};
+use super::line::{Label, OWord, Role, begin, begins_title, loop_number, next, o_word, statement};
 use super::variables::Scope;
 use crate::gcode::cursor::Cursor;
 use crate::gcode::{GcodeError, GcodeFault};
@@ -67,7 +67,7 @@ pub(super) struct Structure {
     /// By line.
     clauses: HashMap<usize, Clause>,
     /// The lines of titles of programs, in order.
-    titles: Vec<Place>,
+    pub(super) titles: Vec<Place>,
     /// The loops of Fanuc, by their first lines.
     loops: BTreeMap<usize, Loop>,
     pub(super) lines: usize,
@@ -98,7 +98,7 @@ impl Structure {
             found.lines = here.line;
             let mut cursor = begin(line);
             let word = match next(&mut cursor) {
-                Ok(Some(b'O' | b'o' | b':')) => o_word(&mut cursor, scope),
+                Ok(Some(byte)) if begins_title(byte) => o_word(&mut cursor, scope),
                 Ok(Some(byte)) if b"GgIiWwDdEe".contains(&byte) => {
                     found.statement(&mut groups, cursor, here, after);
                     continue;

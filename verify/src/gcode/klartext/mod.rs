@@ -35,6 +35,7 @@ use motion::{Before, number};
 use std::collections::{BTreeMap, BTreeSet};
 use std::mem;
 use touchoff::Unit;
+pub(super) use words::has_effect;
 use words::{Entry, FUNCTIONS, STATEMENTS, Treatment, find};
 
 /// Largest number of a tool.

@@ -48,6 +48,11 @@ pub(super) fn find_cycle(number: u32) -> Option<&'static Entry> {
     find(&CYCLES, &word)
 }
 
+/// Returns whether an M word moves the tool or changes what positions mean, as far as it is known.
+pub(in crate::gcode) fn has_effect(word: &str) -> bool {
+    find(&M_WORDS, word).is_some_and(|entry| entry.treatment != Treatment::PassedOver)
+}
+
 /// Returns the entry of a word.
 pub(super) fn find(table: &'static [Entry], word: &str) -> Option<&'static Entry> {
     table.iter().find(|entry| entry.word == word)

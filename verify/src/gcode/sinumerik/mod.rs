@@ -96,10 +96,11 @@ struct Waiting<'a> {
 }
 
 /// Returns whether a text is a native program of Sinumerik: whether it has a statement that no other language has, or, if the control is
-/// stated to be one, a call by a name alone. Otherwise it has no `#` either, which begins the parameters of others, and no line that begins
-/// with a number, as those of Heidenhain Klartext do. Comments are not read. Programs of ISO words alone are none.
+/// stated to be one, a call by a name alone, or nothing of its ISO mode ([`is_of_iso_mode`], comments in brackets, `#`, `%`). Otherwise it
+/// has no `#` either, which begins the parameters of others, and no line that begins with a number, as those of Heidenhain Klartext do.
+/// Comments are not read.
 pub(super) fn is_native(text: &str, is_stated: bool) -> bool {
-    let mut found = false;
+    let (mut found, mut has_iso_mode) = (false, false);
     for line in text.lines() {
         if title(line).is_some_and(|name| name.len() > 7) {
             found = true;
@@ -116,8 +117,13 @@ pub(super) fn is_native(text: &str, is_stated: bool) -> bool {
         while !words.is_at_end() {
             match words.byte() {
                 Some(b'#') if !is_stated => return false,
+                Some(b'#' | b'%') => {
+                    has_iso_mode = true;
+                    words.advance();
+                }
                 // A comment elsewhere, and the arguments of a call here, whose name was read before.
                 Some(b'(') => {
+                    has_iso_mode = true;
                     if words.bracketed([b'(', b')']).is_none() {
                         break;
                     }
@@ -128,6 +134,7 @@ pub(super) fn is_native(text: &str, is_stated: bool) -> bool {
                     }
                 }
                 Some(byte) if byte.is_ascii_alphabetic() || matches!(byte, b'_' | b'$') => {
+                    has_iso_mode |= is_of_iso_mode(words);
                     found |= is_native_word(&mut words, is_first);
                     is_first = false;
                 }
@@ -136,7 +143,65 @@ pub(super) fn is_native(text: &str, is_stated: bool) -> bool {
             }
         }
     }
-    found
+    found || is_stated && !has_iso_mode
+}
+
+/// Returns whether a text begins with words of which Sinumerik executes one in its ISO mode only: in its own language it is another one,
+/// or none. Words may follow each other without blanks.
+fn is_of_iso_mode(mut words: Cursor) -> bool {
+    loop {
+        let letter = words.take_while(|byte| byte.is_ascii_alphabetic());
+        let digits = words.take_while(|byte| byte.is_ascii_digit());
+        if letter.len() != 1 || digits.is_empty() {
+            return false;
+        }
+        let is_iso = match letter.as_bytes()[0].to_ascii_uppercase() {
+            // G54.1 and its like: a decimal point follows.
+            b'G' if words.byte() == Some(b'.') => true,
+            b'G' => matches!(
+                digits.trim_start_matches('0'),
+                "10" | "15"
+                    | "16"
+                    | "20"
+                    | "21"
+                    | "28"
+                    | "30"
+                    | "43"
+                    | "44"
+                    | "49"
+                    | "50"
+                    | "51"
+                    | "52"
+                    | "65"
+                    | "66"
+                    | "67"
+                    | "68"
+                    | "69"
+                    | "73"
+                    | "76"
+                    | "80"
+                    | "81"
+                    | "82"
+                    | "83"
+                    | "84"
+                    | "85"
+                    | "86"
+                    | "87"
+                    | "88"
+                    | "89"
+                    | "92"
+                    | "98"
+                    | "99"
+                    | "291"
+            ),
+            b'M' => matches!(digits, "98" | "99"),
+            b'H' | b'O' => true,
+            _ => false,
+        };
+        if is_iso {
+            return true;
+        }
+    }
 }
 
 /// Returns whether a line is the call of a subprogram: `NAME`, `NAME(…)`, `NAME P3` or `L100`.

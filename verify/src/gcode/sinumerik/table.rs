@@ -114,7 +114,7 @@ const REFUSED: &[(&[&str], &str, &str)] = &[
         "write ROT with X, Y or Z, or CYCLE800",
     ),
     (
-        &["CTRANS", "CROT", "CMIRROR", "CSCALE", "MEAFRAME", "PRESETON"],
+        &["CTRANS", "CROT", "CMIRROR", "CSCALE", "MEAFRAME", "PRESETON", "PRESETONS"],
         "a frame that is computed",
         "write TRANS and ROT",
     ),

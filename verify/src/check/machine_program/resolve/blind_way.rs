@@ -44,6 +44,20 @@ impl Resolver<'_> {
         Some(BlindWay { levels, is_at_top })
     }
 
+    /// Returns the level of the gauge point during a step that moves axes aside at the top of Z's travel.
+    pub(in crate::check) fn top_way(&mut self, step: &Step) -> Option<BlindWay> {
+        if !(self.is_placed && self.was_at_top && self.is_at_top) || step.commanded[2] {
+            return None;
+        }
+        // A machine that has none has refused every motion.
+        let chain = self.chain(0.0).ok()?.without_linear_limits();
+        let turns = |k: usize| step.commanded[k] || self.joints[k].is_none() && self.has_axis(k);
+        let mut joints = self.joints.map(Option::unwrap_or_default);
+        joints[2] = self.setup.top.unwrap_or_default();
+        let levels = self.levels_while(&chain, &joints, &turns);
+        Some(BlindWay { levels, is_at_top: true })
+    }
+
     /// Returns the known motions of a step without a tool, with the levels of the spindle's gauge point.
     ///
     /// # Errors

@@ -49,6 +49,9 @@ impl Resolver<'_> {
         };
         let guide = if is_tip { Some(self.chain(offset)?) } else { None };
         let chain = self.chain(length)?;
+        // The axis is higher than the tip by a length that is not known. Machine coordinates are those of the axis.
+        let is_of_axis = is_known || matches!(step.path, StepPath::Machine(_));
+        let chain = if is_of_axis { chain } else { chain.without_lower_z_limit() };
         let guide = guide.unwrap_or(chain);
         let origin = if state.work_offset == WorkOffset::Standard(1) {
             // G54 is the frame of the part: the program may set it to the same values, and to no others.
