@@ -709,3 +709,32 @@ fn the_first_position_after_a_rotation_is_no_increment() {
         assert!(common::is_fault(&error, "P0120 after G68"), "{text}: {error}");
     }
 }
+
+/// A stated Sinumerik reads its own language unless a word of its ISO mode stands in the program: D is then the length of the tool.
+#[test]
+fn plain_programs_are_native_unless_in_iso_mode() {
+    let stated = ControlRules::named("siemens").expect("a control");
+    let setup = ControlSetup { rules: stated, ..setup() };
+    let length = |words: &str| {
+        let text = format!(
+            "G17 G90 G54 G71 G94 G40\nT1\nM6\nD1\nS900 M3\nG0 X1\n{words}G1 Z2 F100\nM30\n"
+        );
+        let (steps, _) = read(&text, &setup).expect("a program");
+        steps.last().expect("a step").state.length
+    };
+    let native = LengthOffset::On { register: 1, length: Some(80.0) };
+    assert_eq!(length(""), native);
+    assert_eq!(length("G60 G450\n"), native);
+    for iso in ["(A COMMENT)\n", "G49\n", "G80\n"] {
+        assert_ne!(length(iso), native, "{iso}");
+    }
+}
+
+/// In a block of its own D is that of the tool in the spindle, whatever tool the changer prepares.
+#[test]
+fn d_after_a_preselected_tool_is_that_of_the_spindle() {
+    let text = "G17 G90 G54 G71 G94\nT1 D1\nM6\nT2\nG0 X0 Y0\nG0 Z50\nSUPA G0 Z300 D0\nD1\nG0 Z20\nMSG(\"A\")\nM30\n";
+    let last = steps(text).pop().expect("a step");
+    assert_eq!(last.state.length, LengthOffset::On { register: 1, length: Some(80.0) });
+    assert_eq!(last.state.tool, Some(1));
+}

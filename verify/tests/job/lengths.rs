@@ -310,3 +310,37 @@ fn tool_centre_point_control_begins_at_no_unknown_tip() {
         scene.gives_by(stays("fanuc"), verdict, rows);
     }
 }
+
+/// The axis is higher than the tip by a length that is not stated: its lower limit is not that of the tip, and its upper one is said.
+#[test]
+fn limits_of_z_are_those_of_the_axis() {
+    let scene = |z: &str, g54: f64, length: &str| {
+        let blocks = format!("T1 M6\nS900 M3\nG43 H1\nG0 X0. Y0.\nZ{z}\nG1 Z1.\nG0 Z{z}");
+        let mut scene = Scene::new(&blocks).with("anyway = true");
+        scene.job = scene.job.replace("LENGTH", length);
+        scene.job += &format!("[work_offsets]\nG54 = [0, 0, {g54}]\n");
+        scene
+    };
+    scene("50.", -510.0, "").gives_by(stays("haas"), CLEAN, &["V0313 7"]);
+    scene("50.", -510.0, "length = 100").gives_by(stays("haas"), CLEAN, &[]);
+    scene("230.", -250.0, "").gives_by(stays("haas"), CLEAN, &["V0313 7"]);
+    scene("230.", -250.0, "length = 100").gives_by(
+        stays("haas"),
+        FINDINGS,
+        &["V0108 Z goes to 80"],
+    );
+    // The tip alone is beyond it.
+    scene("260.", -250.0, "").gives_by(stays("haas"), FINDINGS, &["V0108 Z goes to 10"]);
+}
+
+/// Aside at the top of Z, a tool of unknown length is at least as low as it is drawn.
+#[test]
+fn a_tool_of_unknown_length_is_not_above_all_at_the_top() {
+    let blocks = "G53 G0 Z0.\nT1 M6\nS900 M3\nG43 H1\nG0 X0. Y0.\nZ50.\nG1 Z1.\nG0 Z50.\nG53 G0 Z0.\nG53 G0 X90. Y90.";
+    for (top, verdict) in [(395.0, NONE), (300.0, CLEAN)] {
+        let mut scene = Scene::new(blocks).obstacle([40.0, 40.0, 0.0], [45.0, 45.0, top]);
+        scene.job += G54;
+        let patterns: &[&str] = if verdict == NONE { &["V0612 the clamp"] } else { &[] };
+        scene.gives_by(stays("linuxcnc"), verdict, patterns);
+    }
+}

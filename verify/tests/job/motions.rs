@@ -55,9 +55,9 @@ fn rapid_traverse_is_any_dog_leg_where_its_path_is_not_stated() {
     scene.gives(
         ANY,
         FINDINGS,
-        &["V0103 6 the clamp", "V0103 6 at some rates of its axes", "V0103 6 `rapid`"],
+        &["V0101 6 the clamp", "V0101 6 at some rates of its axes", "V0101 6 `rapid`"],
     );
-    scene.gives(FANUC, FINDINGS, &["V0103 6 the clamp"]);
+    scene.gives(FANUC, FINDINGS, &["V0101 6 the clamp"]);
     scene.gives(LINUXCNC, CLEAN, &[]);
     // With rates the path is one dog-leg: X and Y together, or X first.
     for (x, verdict) in [(10_000, CLEAN), (40_000, FINDINGS)] {

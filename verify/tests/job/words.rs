@@ -57,6 +57,19 @@ fn another_program_in_the_file_is_not_passed_over() {
         let scene = Scene::of(&text);
         scene.gives(LINUXCNC, NONE, &["V0512"]);
     }
+    // Neither a program that begins anew, nor a subprogram before the main program, nor its end in one, nor an old title hides it.
+    let again = one.replace("M30", "M99");
+    let ends_inside = one.replace("M30", "M98 P7");
+    for text in [
+        format!("%\nO1\n{again}O2\n{other}%\n"),
+        format!("%\nO9\nG0 X5.\nM99\nO2\n{}%\n", other.replace("M30", "M98 P9\nM30")),
+        format!("%\nO1\n{ends_inside}O7\nG1 X5.\nM30\nO2\n{other}%\n"),
+        format!("%\nO1\n{one}:2\n{other}%\n"),
+        format!("%\n<PART>\n{one}<OTHER>\n{other}%\n"),
+    ] {
+        Scene::of(&text).gives(FANUC, NONE, &["V0512"]);
+    }
+    Scene::of(&format!("%\n<PART>\n{one}%\n")).gives(FANUC, CLEAN, &[]);
     let sub = format!(
         "%\nO1\n{}O7\nG1 X5.\nM99\n%\n(made by a post)\n",
         one.replace("M30", "M98 P7\nM30")
@@ -477,4 +490,33 @@ fn a_whole_number_is_an_increment_of_its_own_word() {
     assert!((end[1].expect("y") - 24.638).abs() < 1e-9, "{end:?}");
     let drilled = read("G69\nG69 G99 G81 X0. Y0. Z-.05 R2000 F5.");
     assert!(drilled.iter().any(|step| (step.end[2].unwrap_or(0.0) - 5.08).abs() < 1e-9));
+}
+
+/// A word that selects coordinates in the language of the program is none that a job can pass over.
+#[test]
+fn words_that_select_coordinates_are_not_ignored() {
+    for word in ["G500", "G505", "G599", "G153", "G290", "G291", "PRESETONS"] {
+        let text = format!("ignore = {{ {word} = \"a lamp\" }}");
+        assert!(Scene::new("").with(&text).check(SIEMENS).has("K0504"), "{word}");
+    }
+    let scene = Scene::new("G0 X0. Y0. M91").with("ignore = { M91 = \"a lamp\" }");
+    scene.gives(HEIDENHAIN, NONE, &["P0115 2 M91"]);
+    scene.with("anyway = true").gives(FANUC, NONE, &[]);
+}
+
+/// Words of everyday programs that move nothing.
+#[test]
+fn words_without_motion_take_their_letters() {
+    for (control, block) in [
+        (LINUXCNC, "M67 E0 Q1"),
+        (LINUXCNC, "M68 E2 Q0.5"),
+        (LINUXCNC, "M52 P1"),
+        (FANUC, "G5.1 Q1 R5"),
+        (HAAS, "G98 G83 X0. Y0. Z1. R5. I2. J.5 K.5\nG80"),
+        (HAAS, "G98 G84 X0. Y0. Z1. R5. J2\nG80"),
+    ] {
+        let scene = Scene::new(&format!("T1 M6\nS900 M3\nG43 H1\nG0 X0. Y0.\nZ50.\n{block}"));
+        let checked = scene.placed().with("anyway = true").check(control);
+        assert!(!checked.has("P01"), "{block}: {:#?}", checked.rows);
+    }
 }

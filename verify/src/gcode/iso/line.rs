@@ -235,7 +235,7 @@ impl Line {
         let word = code.to_string();
         if scope.control.ignores(&word) {
             if is_heidenhain(scope.control) && klartext::has_effect(&word) {
-                let meaning = "a word of Heidenhain that has an effect, and is not ignored";
+                let meaning = "a word of Heidenhain that moves the tool or its coordinates, whatever the job ignores";
                 return Err(not_read(code, meaning, "post the program without it"));
             }
             self.ignored.push(code.to_string());
