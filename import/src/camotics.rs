@@ -30,7 +30,8 @@ fn read_tool(number: u32, value: &Value) -> Found {
     let Some(tool) = value.as_object() else {
         return Err(Problem::new(&label, "it is no object"));
     };
-    entry(number, tool).map_err(|reason| Problem::new(&label, &reason))
+    entry(number, tool)
+        .map_err(|reason| Problem { number: Some(number), ..Problem::new(&label, &reason) })
 }
 
 fn entry(number: u32, tool: &Object) -> Result<Entry, String> {

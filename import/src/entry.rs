@@ -38,6 +38,8 @@ pub struct Skipped {
     pub position: usize,
     /// Its description, or its type if it has none.
     pub name: String,
+    /// The number by which programs select it, if it is known.
+    pub number: Option<u32>,
     /// Why it was left out.
     pub reason: String,
 }

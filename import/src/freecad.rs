@@ -132,7 +132,7 @@ fn read_holder(holder: &Object, title: &str) -> Result<Entry, String> {
 
 fn read_bit(bit: &Object, number: Option<&Value>) -> Found {
     let title = string(bit, "name");
-    read_shape(bit, title, number).map_err(|error| Problem::new(title, &error))
+    read_shape(bit, title, number).map_err(|error| Problem::new(title, &error).numbered(number))
 }
 
 fn read_shape(bit: &Object, title: &str, number: Option<&Value>) -> Result<Entry, String> {

@@ -19,7 +19,8 @@ pub(super) fn tool(value: &Value) -> Found {
     let kind = string(tool, "type");
     let title = string(tool, "description");
     let label = if title.is_empty() { kind } else { title };
-    read_tool(tool, kind, title).map_err(|error| Problem::new(label, &error))
+    let number = tool.get("post-process").and_then(|post| post.get("number"));
+    read_tool(tool, kind, title).map_err(|error| Problem::new(label, &error).numbered(number))
 }
 
 fn read_tool(tool: &Object, kind: &str, title: &str) -> Result<Entry, String> {

@@ -19,7 +19,8 @@ pub(super) fn tool(value: &Value) -> Found {
     let Some(tool) = value.as_object() else {
         return Err(Problem::new("entry", "it is no object"));
     };
-    read_tool(tool).map_err(|reason| Problem::new(string(tool, "name"), &reason))
+    let number = tool.get("number");
+    read_tool(tool).map_err(|reason| Problem::new(string(tool, "name"), &reason).numbered(number))
 }
 
 fn read_tool(tool: &Object) -> Result<Entry, String> {

@@ -87,12 +87,19 @@ type Found = Result<Entry, Problem>;
 /// A tool that could not be read.
 struct Problem {
     name: String,
+    /// The number by which programs select it, if it is known.
+    number: Option<u32>,
     reason: String,
 }
 
 impl Problem {
     fn new(name: &str, reason: &str) -> Problem {
-        Problem { name: name.to_owned(), reason: reason.to_owned() }
+        Problem { name: name.to_owned(), number: None, reason: reason.to_owned() }
+    }
+
+    /// States its number, as a library has it.
+    fn numbered(self, value: Option<&Value>) -> Problem {
+        Problem { number: value.and_then(json::tool_number), ..self }
     }
 }
 
@@ -184,8 +191,8 @@ impl Library {
         for (index, found) in found.into_iter().enumerate() {
             let position = index + 1;
             match found {
-                Err(Problem { name, reason }) => {
-                    library.skipped.push(Skipped { position, name, reason });
+                Err(Problem { name, number, reason }) => {
+                    library.skipped.push(Skipped { position, name, number, reason });
                 }
                 Ok(mut entry) => {
                     entry.add_notes();
@@ -196,6 +203,7 @@ impl Library {
                         Err(error) => library.skipped.push(Skipped {
                             position,
                             name: entry.label().to_owned(),
+                            number: entry.number,
                             reason: reason(&error),
                         }),
                     }
@@ -220,18 +228,20 @@ impl Library {
         &self.skipped
     }
 
-    /// Returns the tools that a text names. `T5` are those with the number 5, as programs select them, if there is one. Then come those with
-    /// this name; without one, those with this title, and then those with this number.
+    /// Returns the tools that a text names. `T5` are those with the number 5, as programs select them, if a tool of the library has a number;
+    /// none if one of them was left out. Otherwise come those with this name; without one, those with this title, and then those with this
+    /// number.
     pub fn find(&self, wanted: &str) -> Vec<&ImportedTool> {
         let number: Option<u32> = wanted.trim_start_matches(['T', 't']).parse().ok();
         let has_number = |tool: &ImportedTool| number.is_some() && tool.entry.number == number;
-        let is_selection = number.is_some_and(|number| wanted == format!("T{number}"));
-        let is_wanted: [&dyn Fn(&ImportedTool) -> bool; 4] = [
-            &|tool| is_selection && has_number(tool),
-            &|tool| tool.name == wanted,
-            &|tool| tool.entry.title == wanted,
-            &has_number,
-        ];
+        let is_selection = number.is_some_and(|number| wanted == format!("T{number}"))
+            && self.tools.iter().any(|tool| tool.entry.number.is_some());
+        if is_selection {
+            let is_left_out = self.skipped.iter().any(|skipped| skipped.number == number);
+            return self.tools.iter().filter(|tool| !is_left_out && has_number(tool)).collect();
+        }
+        let is_wanted: [&dyn Fn(&ImportedTool) -> bool; 3] =
+            [&|tool| tool.name == wanted, &|tool| tool.entry.title == wanted, &has_number];
         let mut found = is_wanted
             .into_iter()
             .map(|is_wanted| self.tools.iter().filter(|tool| is_wanted(tool)).collect::<Vec<_>>());

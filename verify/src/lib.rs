@@ -33,8 +33,8 @@ pub use check::{
     Approach, Assumption, BlindWay, BlockError, BlockFault, Finding, FindingGroup, FindingKind,
     Gap, GapWeight, JointPath, Level, MAX_READINGS, MAX_VALUES, MachineProgram,
     MachineProgramError, MachineSummary, Move, MovePath, Obstacle, ProgramStop, RapidBox,
-    StepFault, Tilt, ToolSelection, ToolUse, UnknownCause, UnknownMotions, Verifier, VerifyError,
-    VerifyReport,
+    StepFault, Tilt, ToolSelection, ToolUse, TopWay, UnknownCause, UnknownMotions, Verifier,
+    VerifyError, VerifyReport,
 };
 pub use job::{Job, JobError, JobFile, JobReport, JobTool, Program, Verdict};
 pub use program::{ClData, CutterLocation, ProgramError};

@@ -1,6 +1,8 @@
 //! A tool library of every format, with every type that can be read.
 
 use serde_json::{Map, Value, json};
+use std::path::Path;
+use touchoff_import::Library;
 use touchoff_tests::fusion;
 
 /// A file of a tool library.
@@ -125,3 +127,23 @@ LOADTL/4
 GOTO/0,0,0
 FINI
 ";
+
+/// A program selects a tool by its number alone, of which none was left out.
+#[test]
+fn programs_select_tools_by_their_numbers() {
+    let tool = |kind: &str, title: &str, number: u32| {
+        format!(
+            "{{\"type\": \"{kind}\", \"description\": \"{title}\", \"unit\": \"millimeters\", \"geometry\": {{\"DC\": 10, \"LCF\": 20, \
+             \"LB\": 40, \"OAL\": 70, \"SFDM\": 10}}, \"post-process\": {{\"number\": {number}}}}}"
+        )
+    };
+    let found = |tools: &[String]| {
+        let text = format!("{{\"data\": [{}], \"version\": 2}}", tools.join(", "));
+        let library = Library::parse(Path::new("a.json"), text.as_bytes()).expect("a library");
+        library.find("T1").iter().map(|tool| tool.entry.title.clone()).collect::<Vec<_>>()
+    };
+    let end_mill = |title: &str, number| tool("flat end mill", title, number);
+    assert_eq!(found(&[end_mill("wide", 1), end_mill("T1", 5)]), ["wide"]);
+    assert_eq!(found(&[end_mill("T1", 5)]), [""; 0]);
+    assert_eq!(found(&[end_mill("slim", 1), tool("form mill", "wide", 1)]), [""; 0]);
+}

@@ -28,7 +28,7 @@ mod summary;
 pub use fault::{BlockError, BlockFault, MachineProgramError, Obstacle, StepFault};
 pub(crate) use summary::CheckGap;
 pub use summary::{
-    BlindWay, Gap, GapWeight, Level, MachineSummary, ProgramStop, ToolUse, UnknownCause,
+    BlindWay, Gap, GapWeight, Level, MachineSummary, ProgramStop, ToolUse, TopWay, UnknownCause,
     UnknownMotions,
 };
 
@@ -548,9 +548,10 @@ impl MachineProgram {
                     }
                     let is_judged =
                         is_judged || execution.resolver.leaves_change(&step, cause, arrives);
-                    let way = execution.resolver.top_way(&step).filter(|_| !is_known);
-                    if let (Some(tool), Some(way)) = (number, way) {
-                        MachineSummary::add_top_way(&mut summary.top_ways, step.block(), tool, way);
+                    if let (Some(tool), Some(way)) = (number, execution.resolver.top_way(&step)) {
+                        let length = self.setup.lengths.get(&tool).copied();
+                        let way = TopWay { block: step.block(), tool, length, way };
+                        summary.add_top_way(way);
                     }
                     summary.add_unknown(&step, cause, is_judged);
                     continue;

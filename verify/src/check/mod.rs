@@ -35,7 +35,7 @@ pub use finding::{Finding, FindingGroup, FindingKind, VerifyError, VerifyReport}
 pub use machine_program::{
     Assumption, BlindWay, BlockError, BlockFault, Gap, GapWeight, Level, MAX_READINGS, MAX_VALUES,
     MachineProgram, MachineProgramError, MachineSummary, Obstacle, ProgramStop, StepFault,
-    ToolSelection, ToolUse, UnknownCause, UnknownMotions,
+    ToolSelection, ToolUse, TopWay, UnknownCause, UnknownMotions,
 };
 pub(crate) use machine_program::{CheckGap, MoveRequest};
 pub use moves::{JointPath, Move, MovePath, RapidBox};

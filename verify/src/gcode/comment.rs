@@ -183,7 +183,10 @@ fn description(
     let diameter = value(rest, &["D"])
         .or_else(|| diameter(rest))
         .or_else(|| braced.and_then(last_measure))
-        .or_else(|| measure(rest.trim_start().strip_prefix(':')?).map(|found| found.0))
+        .or_else(|| {
+            let (found, after) = measure(rest.trim_start().strip_prefix(':')?)?;
+            Some(found).filter(|_| !after.starts_with('-'))
+        })
         .or_else(|| named_diameter(rest))?;
     let corner = ["CR", "CORNER RADIUS", "CORNER RAD.", "CORNER RAD"];
     let corner = value(rest, &corner).or_else(|| radius(rest));
@@ -290,19 +293,23 @@ fn without_counts(text: &str) -> String {
         ["FLUTE", "FLUTES", "FLT", "FL", "F", "DEG", "DEGREE", "DEGREES", "°", "LOC", "OAL", "LG"];
     let is_counted = |word: &str| COUNTED.contains(&word.trim_matches(['-', '.', ',']));
     let mut kept: Vec<&str> = Vec::new();
-    for word in text.split_whitespace() {
+    let mut words = text.split_whitespace().peekable();
+    while let Some(word) = words.next() {
         // `3FL` and `90DEG` are one word.
         let number = word.trim_start_matches(|c: char| c.is_ascii_digit() || c == '.');
         if number.len() < word.len() && is_counted(number) {
             continue;
         }
         if is_counted(word) {
-            // Its number stands before it, with a unit of its own or without one.
-            if kept.len() > 1 && matches!(kept[kept.len() - 1], "MM" | "IN" | "INCH") {
-                kept.pop();
-            }
-            if kept.last().is_some_and(|last| number_in(last).is_some()) {
-                kept.pop();
+            // Its number stands before it, with a unit of its own or without one, unless that is the diameter; or after it.
+            let has_unit = matches!(kept.last(), Some(&("MM" | "IN" | "INCH")));
+            let at = kept.len().saturating_sub(1 + usize::from(has_unit));
+            let is_number = kept.get(at).is_some_and(|last| number_in(last).is_some());
+            let is_diameter = at > 0 && kept[at - 1].contains("DIA");
+            if is_number && !is_diameter {
+                kept.truncate(at);
+            } else if words.peek().is_some_and(|next| number_in(next).is_some()) {
+                words.next();
             }
             continue;
         }
@@ -500,6 +507,9 @@ mod tests {
             ("(T1 .500 DIA 4 FLUTE ENDMILL 1.5 LOC)", (1, 0.5, None, Unnamed)),
             ("(T1 - ENDMILL 10MM DIA 25MM LOC 72 MM OAL)", (1, 10.0, None, Unnamed)),
             ("(T1 DIA 10. 4 FLUTE ENDMILL)", (1, 10.0, None, Unnamed)),
+            ("(T1 ENDMILL DIA 10 FLUTES 4)", (1, 10.0, None, Unnamed)),
+            ("(T1 ENDMILL DIA. 16. FL 30 OAL 72)", (1, 16.0, None, Unnamed)),
+            ("(T1 DRILL DIA 10 MM DEG 118)", (1, 10.0, None, Other)),
             // The size of what the tool makes is another one.
             ("(T3 DRILL DIA 6.8 FOR M8 HOLES DIA 8)", (3, 6.8, None, Other)),
             ("(T1 | 6MM DRILL FOR HOLES | H1 | TOOL DIA. - 6.)", (1, 6.0, None, Other)),
@@ -548,6 +558,7 @@ mod tests {
             "(T1 DRILLS DIA 8 HOLES)",
             "T1 M6 (3 FLUTE ENDMILL)",
             "(T1 90 DEG SPOT DRILL)",
+            "(T1 : 8-32 TAP)",
             "(T1 - 90 DEGREE CHAMFER MILL)",
             "(T1 DRILL, 4 HOLES DIA 8)",
             "(T1 CUTS D=20 POCKET)",

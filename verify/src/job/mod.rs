@@ -844,9 +844,10 @@ faults! {
         #[code = V0611]
         #[error("the set-up before, whose stock this is, leaves something open, which {file} accepts by `anyway`")]
         AcceptedSetup { file: String },
-        /// A motion aside at the top of Z's travel, of a tool whose length is not stated, over something that is higher than its tip as drawn.
+        /// A motion aside at the top of Z's travel, whose place is not known, over something that is higher than the tool's tip by its length
+        /// or, if that is not stated, as it is drawn.
         #[code = V0612]
-        #[error("at the top of Z, T{tool} reaches lower than {name}, by its drawing: state its `length`, with which its motions there are checked")]
+        #[error("at the top of Z, T{tool} reaches lower than {name}: state its `length` and `home` of the axes, with which its motions there are checked")]
         LowTop { name: String, tool: u32 },
     }
 }

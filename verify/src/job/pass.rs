@@ -10,7 +10,9 @@ use super::{Body, BodyFrame, BodyRole, Job, JobError, JobGap, JobStock, JobTool,
 use crate::check::{ApproachSearch, MoveCheck, MoveRequest};
 use crate::gcode::{BlockLine, WorkOffset};
 use crate::machine::{Axis, Link, Machine, Side};
-use crate::{BlindWay, FindingGroup, Level, MachineProgram, MachineSummary, Move, Verifier};
+use crate::{
+    BlindWay, FindingGroup, Level, MachineProgram, MachineSummary, Move, TopWay, Verifier,
+};
 use nalgebra::{Point3, Vector3};
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -160,13 +162,13 @@ impl<'a> Job<'a> {
                 Some((block, gap(self.highest_above(way, stock, least)?.to_owned())))
             });
             // The tip of a tool of unknown length is at least as low as the tool is drawn.
-            let at_top = top_ways.iter().filter_map(move |(block, number, way)| {
-                let info = self.tool_of(Some(*number))?.tool.info();
+            let at_top = top_ways.iter().filter_map(move |TopWay { block, tool, length, way }| {
+                let info = self.tool_of(Some(*tool))?.tool.info();
                 let mut way = way.clone();
-                let drawn = info.reach().high * info.unit.millimetres();
-                way.levels.iter_mut().for_each(|level| level.height -= drawn);
+                let below = length.unwrap_or(info.reach().high * info.unit.millimetres());
+                way.levels.iter_mut().for_each(|level| level.height -= below);
                 let name = self.highest_above(&way, stock, LEVEL_ROUNDING)?.to_owned();
-                Some((*block, JobGap::LowTop { name, tool: *number }))
+                Some((*block, JobGap::LowTop { name, tool: *tool }))
             });
             low.chain(at_top)
         })

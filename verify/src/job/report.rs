@@ -2,7 +2,7 @@
 
 use super::machine::MachineFinding;
 use super::stock::{CutStock, StockFinding};
-use super::{Body, FindingRule, Job, JobTool, RevolvedBody};
+use super::{Body, FindingRule, Job, JobGap, JobTool, RevolvedBody};
 use crate::codes::faults;
 use crate::gcode::SubprogramLine;
 use crate::{Approach, FindingGroup, Gap, GapWeight, Tilt, VerifyReport};
@@ -232,7 +232,9 @@ impl JobReport<'_> {
 
     /// Returns whether the job has accepted a reason for which there would be no verdict.
     pub(super) fn is_lenient(&self) -> bool {
-        self.job.anyway && !self.refusals_if(false).is_empty()
+        let is_before =
+            |gap: &Gap| gap.code() == JobGap::AcceptedSetup { file: String::new() }.code();
+        self.job.anyway && !self.refusals_if(false).is_empty() || self.gaps.iter().any(is_before)
     }
 
     /// Returns the reasons for which a result without findings proves nothing, if the job accepts what is left open or not.
@@ -357,8 +359,8 @@ faults! {
         /// A program that seems to be in another unit than the part.
         #[code = V0204]
         #[error(
-            "the positions in feed lie outside the part's box, but would fit if they were {factor} times as large: check the units of part \
-             and program, or accept the program with `--anyway`"
+            "the positions in feed lie outside the part's box or fill little of it, but would fit if they were {factor} times as large: \
+             check the units of part and program, or accept the program with `--anyway`"
         )]
         OtherUnit {
             /// The factor by which they would fit.

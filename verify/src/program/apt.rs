@@ -26,7 +26,6 @@ use super::{
 use cycle::{Arc, Cycle, Stop};
 use nalgebra::Vector3;
 use std::collections::{BTreeMap, HashSet};
-use std::iter;
 use std::mem;
 use touchoff::{Pose, Unit, cancellation};
 
@@ -41,8 +40,6 @@ const CATIA_AXIS: &str = "$$*CATIA0";
 
 /// The comment with which Creo begins its coordinate system. Rows of numbers may follow.
 const CREO_SYSTEM: &str = "$$-> CSYS";
-/// That of NX: its origin and the directions of its x and y in absolute coordinates.
-const NX_SYSTEM: &str = "MSYS";
 
 /// The comment with which Creo says whether positions are those of the tool's centre or of the contour.
 const CREO_CONTOUR: &str = "$$-> CUTCOM_GEOMETRY_TYPE";
@@ -196,7 +193,7 @@ struct Reader {
     tools: BTreeMap<u32, BTreeMap<String, (usize, Vec<String>)>>,
     /// Statements about the tool since the last position.
     pending: Vec<ToolStatement>,
-    /// The coordinate system of Creo or NX, as [`Reader::coordinate_system`] writes it.
+    /// Creo's coordinate system, as [`Reader::coordinate_system`] writes it.
     system: Option<Vec<String>>,
     /// The first statement that a program of one tool and one operation cannot have.
     several: Option<Located>,
@@ -241,11 +238,7 @@ impl Reader {
         is_last: bool,
     ) -> Result<(), ProgramFault> {
         if word == CREO_SYSTEM {
-            return self.coordinate_system(word, rest);
-        }
-        if word == NX_SYSTEM {
-            self.tape.ignored.push((line, word.to_owned()));
-            return self.coordinate_system(word, rest);
+            return self.coordinate_system(rest);
         }
         if word == CREO_CONTOUR {
             self.is_contour = rest.eq_ignore_ascii_case("OUTPUT_ON_PROFILE");
@@ -429,17 +422,17 @@ impl Reader {
         Ok(())
     }
 
-    /// Reads a coordinate system of Creo or NX, in which the positions after it are given. Another one than the first is refused.
-    fn coordinate_system(&mut self, word: &str, rest: &str) -> Result<(), ProgramFault> {
+    /// Reads a coordinate system of Creo, in which the positions after it are given. Another one than the first is refused.
+    fn coordinate_system(&mut self, rest: &str) -> Result<(), ProgramFault> {
         // Equal numbers may be written with different digits, and 0 with a sign.
         let cells = parts(rest).map(|cell| match number(cell) {
             Ok(value) => (value + 0.0).to_string(),
             Err(_) => cell.to_owned(),
         });
-        let system: Vec<String> = iter::once(word.to_owned()).chain(cells).collect();
+        let system: Vec<String> = cells.collect();
         match *self.system.get_or_insert_with(|| system.clone()) == system {
             true => Ok(()),
-            false => Err(ProgramFault::Frame { word: word.to_owned() }),
+            false => Err(ProgramFault::Frame { word: CREO_SYSTEM.to_owned() }),
         }
     }
 
@@ -627,7 +620,7 @@ const MOTION_WORDS: [&str; 49] = [
 /// or incremental mode, or the tool and the spindle in use.
 #[rustfmt::skip]
 const FRAME_WORDS: [&str; 21] = [
-    NX_SYSTEM, "CSYS", "TRACUT", "TRANS", "ORIGIN", "ROTABL", "ROTHED", "ROTATE", "TLAXIS", "TILT",
+    "MSYS", "CSYS", "TRACUT", "TRANS", "ORIGIN", "ROTABL", "ROTHED", "ROTATE", "TLAXIS", "TILT",
     "PLANE", "SCALE", "MIRROR", "CUTCOM", "OFSTNO", "FIXOFF", "THICK", "OFFSET", "MODE", "HEAD",
     "TURRET",
 ];
@@ -824,6 +817,10 @@ fn is_inert_with(word: &str, arguments: &str) -> bool {
         "MODE" => is("ABSOL") || is("MILL"),
         "ORIGIN" | "TRANS" | "THICK" => {
             numbers().is_ok_and(|values| values.iter().all(|v| *v == 0.0))
+        }
+        // The part's own coordinates: origin, x axis, y axis.
+        "MSYS" => {
+            numbers().is_ok_and(|values| values == [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0])
         }
         _ => false,
     }

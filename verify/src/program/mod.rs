@@ -288,7 +288,7 @@ fn is_gcode(text: &str) -> bool {
     code.next().is_some_and(|line| {
         let line = line.trim_start_matches(|c: char| c == '/' || c.is_whitespace());
         // A number of its block precedes the head of a program in Klartext.
-        line.starts_with(['%', '('])
+        line.starts_with(['%', '(', '<'])
             || line.contains("BEGIN PGM")
             || begins_word(line)
             || begins_call(line)
@@ -350,8 +350,8 @@ fn decode(bytes: &[u8]) -> Result<Cow<'_, str>, Located> {
     }
 }
 
-/// The characters of Windows-1252 from 0x80 to 0x9F. Those that it lacks are control characters.
-const WINDOWS_1252: &str = "€\u{81}‚ƒ„…†‡ˆ‰Š‹Œ\u{8d}Ž\u{8f}\u{90}‘’“”•–—˜™š›œ\u{9d}žŸ";
+/// The characters of Windows-1252 from 0x80 to 0x9F. Those that it lacks belong to another code page, and stand in a comment at most.
+const WINDOWS_1252: &str = "€\u{fffd}‚ƒ„…†‡ˆ‰Š‹Œ\u{fffd}Ž\u{fffd}\u{fffd}‘’“”•–—˜™š›œ\u{fffd}žŸ";
 
 /// Returns the character of a byte in Windows-1252.
 fn windows_1252(byte: u8) -> char {

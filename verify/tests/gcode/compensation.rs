@@ -787,3 +787,22 @@ fn arcs_beyond_their_end_are_refused_on_linuxcnc() {
         assert!(is_fault(&error, "P0120 an arc"), "{program}\n{error}");
     }
 }
+
+/// A turn of less than 0.05 radians is a corner on Fanuc and none on LinuxCNC.
+#[test]
+fn small_turns_need_a_stated_control() {
+    let program =
+        "G21 G90 G94 G1 X-20 Y-20 F500\nG41 D7 X0 Y0\nX40\nX90 Y2.25\nG40 X130 Y40\nM30\n";
+    let radius_offsets = [(7, 5.0)].into();
+    let setup = ControlSetup { radius_offsets, ..arcs() };
+    for (control, is_read) in [("generic", false), ("fanuc", true), ("linuxcnc", true)] {
+        let rules = ControlRules::named(control).expect("a control");
+        let result = run(program, &ControlSetup { rules, ..setup.clone() });
+        match result {
+            Ok(_) => assert!(is_read, "{control}"),
+            Err(error) => {
+                assert!(!is_read && is_fault(&error, "P0120 a corner"), "{control}: {error}")
+            }
+        }
+    }
+}

@@ -64,6 +64,13 @@ fn rapid_traverse_is_any_dog_leg_where_its_path_is_not_stated() {
         let scene = Scene::new(blocks).placed().obstacle(clamp.0, clamp.1).with("anyway = true");
         scene.with_rates([x, 10_000, 10_000]).gives(ANY, verdict, &[]);
     }
+    // Just above a plate, with a margin of the shank that the tip has not; and through it.
+    for (z, verdict) in [("1.", CLEAN), ("-1.", FINDINGS)] {
+        let text = format!("T1 M6\nS9000 M3\nG43 H1\nG0 X-60. Y-60. Z{z}\nX60. Y50. Z{z}\nG1 Y51.");
+        let plate = Scene::new(&text).placed().obstacle([-55.0, -40.0, -9.0], [40.0, 40.0, 0.0]);
+        let plate = plate.with("anyway = true\nallow = { shank = -5 }");
+        plate.gives(FANUC, verdict, &[]);
+    }
     // Away from the clamp all dog-legs are proved clear.
     let away = Scene::new(blocks).placed().obstacle([40.0, 40.0, 0.0], [45.0, 45.0, 9.0]);
     away.with("anyway = true").gives(ANY, CLEAN, &[]);
@@ -281,5 +288,18 @@ fn a_position_in_machine_coordinates_is_not_the_way_home() {
         ("G53 G0 X-20. Y30.", NONE),
     ] {
         Scene::new(&format!("{start}{way}")).gives(LINUXCNC, verdict, &[]);
+    }
+}
+
+/// The stock is cut along the straight path: any dog-leg has to be clear of its box.
+#[test]
+fn rapid_traverse_at_any_rates_is_clear_of_the_box_of_the_stock() {
+    for (z, gaps) in [("20.", false), ("0.4", true)] {
+        let text =
+            format!("T1 M6\nS9000 M3\nG43 H1\nG0 X-60. Y-60. Z20.\nZ{z}\nX60. Y50.\nG0 Z20.");
+        let mut scene = Scene::new(&text).placed().with("anyway = true");
+        scene.job += "[stock]\nbox = [[-3, -3, -2], [3, 3, 0.5]]\nspacing = 0.5\n";
+        assert_eq!(scene.check(FANUC).has("V0602"), gaps, "{z}");
+        assert!(!scene.check(LINUXCNC).has("V0602"), "{z}");
     }
 }

@@ -1,5 +1,6 @@
 //! Words, numbers and text that controls read in different ways.
 
+use crate::in_the_way::named;
 use crate::scene::{
     ANY, CLEAN, FANUC, FINDINGS, HAAS, HEIDENHAIN, LINUXCNC, NONE, SIEMENS, Scene, program, rules,
 };
@@ -65,11 +66,36 @@ fn another_program_in_the_file_is_not_passed_over() {
         format!("%\nO9\nG0 X5.\nM99\nO2\n{}%\n", other.replace("M30", "M98 P9\nM30")),
         format!("%\nO1\n{ends_inside}O7\nG1 X5.\nM30\nO2\n{other}%\n"),
         format!("%\nO1\n{one}:2\n{other}%\n"),
+        format!("%\nO9\nT1 M6\nG0 X5.\nM99\nO2\n{}%\n", other.replace("M30", "M98 P9\nM99")),
+        format!("%\nO1\n{one}O0002 {other}%\n"),
         format!("%\n<PART>\n{one}<OTHER>\n{other}%\n"),
     ] {
         Scene::of(&text).gives(FANUC, NONE, &["V0512"]);
     }
     Scene::of(&format!("%\n<PART>\n{one}%\n")).gives(FANUC, CLEAN, &[]);
+    // A program is called by its title, wherever it stands.
+    let holes = "<DRILLS>\nG1 X5.\nM99\n<POCKET>\nG1 X0. Z-1.\nM99\n";
+    let calls = one.replace("M30", "M98 <POCKET>\nM30");
+    let own = Scene::of(&format!("%\nO1\n{calls}{holes}%\n"));
+    own.gives(FANUC, FINDINGS, &["V0101"]);
+    let other = Scene::of(&format!("%\nO1\n{calls}%\n")).with("subprograms = [\"POCKET.nc\"]");
+    let other = other.with_file("POCKET.nc", format!("%\n{holes}%\n"));
+    other.gives(FANUC, FINDINGS, &["V0101"]);
+    // Nor is one of another language.
+    let pgm = |name: &str, z: &str| {
+        format!(
+            "BEGIN PGM {name} MM\nTOOL CALL 1 Z S1000\nL X-6 Y+0 Z+20 R0 FMAX M3\nL Z{z} F100\nL Z+20 FMAX\nM30\nEND PGM {name} MM\n"
+        )
+    };
+    let two = named("a.h", &(pgm("A", "+1") + &pgm("B", "-1")));
+    two.gives(HEIDENHAIN, NONE, &["V0512"]);
+    let mpf = |name: &str, z: &str| {
+        format!(
+            "%_N_{name}_MPF\nG17 G90 G54 G71 G94\nT1 M6\nD1\nS900 M3\nG0 X-6 Y0 Z20\nG1 Z{z} F100\nG0 Z20\nM30\n"
+        )
+    };
+    let two = named("a.mpf", &(mpf("OP10", "1") + &mpf("OP20", "-1")));
+    two.gives(SIEMENS, NONE, &["V0512"]);
     let sub = format!(
         "%\nO1\n{}O7\nG1 X5.\nM99\n%\n(made by a post)\n",
         one.replace("M30", "M98 P7\nM30")
@@ -513,6 +539,8 @@ fn words_without_motion_take_their_letters() {
         (LINUXCNC, "M52 P1"),
         (FANUC, "G5.1 Q1 R5"),
         (HAAS, "G98 G83 X0. Y0. Z1. R5. I2. J.5 K.5\nG80"),
+        (HAAS, "G98 G83 X0. Y0. Z1. R5. Q2. K2.5\nG80"),
+        (HAAS, "G98 G73 X0. Y0. Z1. R5. Q2. K7.5\nG80"),
         (HAAS, "G98 G84 X0. Y0. Z1. R5. J2\nG80"),
     ] {
         let scene = Scene::new(&format!("T1 M6\nS900 M3\nG43 H1\nG0 X0. Y0.\nZ50.\n{block}"));

@@ -39,9 +39,8 @@ pub struct MachineSummary {
     pub ways_home: Vec<(BlockLine, BlindWay)>,
     /// The blocks of motions of an empty spindle, with the level of its gauge point: the lowest of each direction.
     pub empty_ways: Vec<(BlockLine, BlindWay)>,
-    /// The first block with a motion aside at the top of Z's travel for each tool whose length is not known, with the level of the
-    /// spindle's gauge point.
-    pub top_ways: Vec<(BlockLine, u32, BlindWay)>,
+    /// The ways aside at the top of Z's travel whose place is not known, one of each tool.
+    pub top_ways: Vec<TopWay>,
     /// The block of the first motion of an empty spindle.
     pub first_empty: Option<BlockLine>,
     /// The number of motions of an empty spindle whose ends are known.
@@ -94,6 +93,20 @@ pub struct BlindWay {
     pub levels: Vec<Level>,
     /// Set if Z stays at the top of its travel.
     pub is_at_top: bool,
+}
+
+/// A way aside at the top of Z's travel, which only the machine knows.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct TopWay {
+    /// The first block.
+    pub block: BlockLine,
+    /// The tool.
+    pub tool: u32,
+    /// Its length, if it is stated.
+    pub length: Option<f64>,
+    /// The highest level at which the spindle's gauge point can be.
+    pub way: BlindWay,
 }
 
 /// A level that the tool is beyond, wherever X and Y are.
@@ -448,7 +461,10 @@ faults! {
         ///
         /// The axis is higher than the tip by the length. What is certainly beyond it is a finding. A verdict is possible.
         #[code = V0313]
-        #[error("the upper limit of Z is checked for the tip alone, as the tool's length is not known: state its `length`")]
+        #[error(
+            "the upper limit of Z, and limits of all linear axes where a head turns, are not checked, as the tool's length is not known: \
+             state its `length`"
+        )]
         UpperLimit,
     }
 }
@@ -558,16 +574,11 @@ impl MachineSummary {
         }
     }
 
-    /// Adds a way of a tool of unknown length at the top of Z's travel: the lowest level of each tool is kept.
-    pub(super) fn add_top_way(
-        ways: &mut Vec<(BlockLine, u32, BlindWay)>,
-        block: BlockLine,
-        tool: u32,
-        way: BlindWay,
-    ) {
-        match ways.iter_mut().find(|(_, known, _)| *known == tool) {
-            Some((_, _, known)) => known.levels = Level::lower(&known.levels, &way.levels),
-            None => ways.push((block, tool, way)),
+    /// Adds a way aside at the top of Z's travel: the lowest level of each tool is kept.
+    pub(super) fn add_top_way(&mut self, added: TopWay) {
+        match self.top_ways.iter_mut().find(|known| known.tool == added.tool) {
+            Some(TopWay { way, .. }) => way.levels = Level::lower(&way.levels, &added.way.levels),
+            None => self.top_ways.push(added),
         }
     }
 

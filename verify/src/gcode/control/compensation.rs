@@ -454,7 +454,7 @@ impl Control {
     ) -> Result<(), GcodeFault> {
         // The first motion has set it.
         let Some(mut held) = compensation.held.take() else { return Ok(()) };
-        let (bend, turn) = offset::bend(&held.contour, &contour, self.tangent_tolerance());
+        let (bend, turn) = self.bend(&held.contour, &contour)?;
         self.check_idle(compensation, bend)?;
         let is_beside_next = held.is_entry
             && bend != Bend::Tangent
@@ -502,7 +502,7 @@ impl Control {
         let mut corner = offset::at(held.contour.beside(1));
         if is_here && (ends[1] - ends[0]).norm() >= STILL {
             let mut contour = Contour::new(ends, Shape::Line, compensation.offset)?;
-            let (bend, turn) = offset::bend(&held.contour, &contour, self.tangent_tolerance());
+            let (bend, turn) = self.bend(&held.contour, &contour)?;
             if bend == Bend::Outside
                 && self.choice(Rule::CompensationStart) == Choice::OutsideCorners
             {
@@ -571,10 +571,20 @@ impl Control {
         }
     }
 
-    fn tangent_tolerance(&self) -> f64 {
+    /// Returns the bend between two contours and the angle by which they turn.
+    ///
+    /// # Errors
+    /// If it is a corner on some controls only, and none is stated.
+    fn bend(&self, before: &Contour, after: &Contour) -> Result<(Bend, f64), GcodeFault> {
+        let [most, on_linuxcnc] =
+            [TANGENT, LINUXCNC_TANGENT].map(|tolerance| offset::bend(before, after, tolerance));
         match self.stated(Rule::Dialect) {
-            Some(Choice::Rs274Ngc) => LINUXCNC_TANGENT,
-            _ => TANGENT,
+            Some(Choice::Rs274Ngc) => Ok(on_linuxcnc),
+            None if most.0 != on_linuxcnc.0 => {
+                let condition = "it turns by less than 0.05 radians under cutter compensation, which is no corner to LinuxCNC";
+                Err(combination("a corner", condition, "state the `control`"))
+            }
+            _ => Ok(most),
         }
     }
 

@@ -238,9 +238,9 @@ impl Control {
                 self.take_length(block, 'I')
             }
             73 | 74 | 83 | 84 => {
-                // How much faster Haas retracts from a tapped hole.
-                if number == 84 && self.repeats_by_l() {
-                    block.take('J');
+                // How much faster Haas retracts from a tapped hole, and after how many pecks, or from which depth, it retracts to R.
+                if self.repeats_by_l() {
+                    block.take(if matches!(number, 74 | 84) { 'J' } else { 'K' });
                 }
                 self.take_length(block, 'Q').or(known.and_then(|cycle| cycle.peck))
             }

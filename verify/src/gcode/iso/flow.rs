@@ -439,7 +439,8 @@ impl<'a> Flow<'a> {
         None
     }
 
-    /// Returns the line of the title of another main program of the file than the first: one that was not called and ends as such.
+    /// Returns the line of the title of another main program of the file than the first: one that was not called, and ends as such, or calls
+    /// others or changes the tool, as one that begins anew does.
     pub(super) fn other_program(&self) -> Option<usize> {
         let source = &self.sources[0];
         let structure = &source.structure;
@@ -452,7 +453,7 @@ impl<'a> Flow<'a> {
             while let Some((line, after)) =
                 line(source.text(), place).filter(|_| place.line <= last)
             {
-                if ends_program(line) {
+                if is_of_main(line) {
                     return true;
                 }
                 place = after;
@@ -785,13 +786,16 @@ fn sequence_number(line: &str) -> Option<u32> {
     digits[..end].parse().ok()
 }
 
-/// Returns whether a line has M2 or M30.
-fn ends_program(line: &str) -> bool {
+/// Returns whether a line has a word that main programs have: M2 or M30, M6, or a call (M97, M98, M198, G65, G66).
+fn is_of_main(line: &str) -> bool {
     let code = code(line).unwrap_or_default();
-    code.split('M').skip(1).any(|word| {
-        let end = word.find(|c: char| !c.is_ascii_digit()).unwrap_or(word.len());
-        matches!(word[..end].parse(), Ok(2 | 30))
-    })
+    let has = |letter: char, numbers: &[u32]| {
+        code.split(letter).skip(1).any(|word| {
+            let end = word.find(|c: char| !c.is_ascii_digit()).unwrap_or(word.len());
+            word[..end].parse().is_ok_and(|number: u32| numbers.contains(&number))
+        })
+    };
+    has('M', &[2, 6, 30, 97, 98, 198]) || has('G', &[65, 66])
 }
 
 /// Returns whether a line has a G or M word, or the position of an axis.

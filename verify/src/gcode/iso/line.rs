@@ -653,6 +653,12 @@ pub(super) enum Label {
 }
 
 impl Label {
+    /// Returns the label of a title in angle brackets.
+    pub(super) fn of_title(name: &str) -> Label {
+        let name: String = name.chars().filter(|c| !c.is_whitespace()).collect();
+        Label::Name(name.to_lowercase())
+    }
+
     /// Returns the label that the name of a file stands for, without its ending.
     pub(super) fn of_file(stem: &str) -> Label {
         let stem: String = stem.chars().filter(|c| !c.is_whitespace()).collect();
@@ -748,8 +754,7 @@ pub(super) fn o_word(cursor: &mut Cursor, scope: &Scope) -> Result<OWord, GcodeF
     let label = match cursor.take(b'<') {
         true => {
             let name = cursor.take_until('>').ok_or(ExpressionFault::OpenName)?;
-            let name: String = name.chars().filter(|c| !c.is_whitespace()).collect();
-            Label::Name(name.to_lowercase())
+            Label::of_title(name)
         }
         false => match value(cursor, scope, Rounding::Whole)?.unwrap_or(-1.0) {
             number if number.fract() == 0.0 && (0.0..=1e8).contains(&number) => {

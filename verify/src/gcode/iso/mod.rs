@@ -518,10 +518,16 @@ impl<'a> Program<'a> {
         let times = block.take_whole('L', least, 99_999_999, expected)?;
         let Some(number) = number else {
             let Some(name) = file else { return Err(missing(word, needed)) };
-            let Some(file) = files::find(self.files, &name) else {
-                return Err(GcodeFault::NoSubprogram { label: shown(&name) });
+            // A program is named by its title, and one without a title by its file.
+            let label = Label::of_title(&name);
+            let target = match self.flow.find(&label, is_linuxcnc) {
+                Some((0, _)) => Target::Program(label),
+                Some((file, subprogram)) => Target::File(file, subprogram),
+                None => match files::find(self.files, &name) {
+                    Some(file) => Target::File(file, self.flow.whole(file)),
+                    None => return Err(GcodeFault::NoSubprogram { label: shown(&name) }),
+                },
             };
-            let target = Target::File(file, self.flow.whole(file));
             return Ok(Called { target, times: times.unwrap_or(1) });
         };
         let target = match tenths {
@@ -537,7 +543,7 @@ impl<'a> Program<'a> {
             _ if number > 9999 && !is_linuxcnc => {
                 return self.called_with_repeats(number, times, control);
             }
-            _ => Target::Program(number),
+            _ => Target::Program(Label::Number(number)),
         };
         Ok(Called { target, times: times.unwrap_or(1) })
     }
@@ -561,7 +567,7 @@ impl<'a> Program<'a> {
             (false, true, None) => (number % 10_000, number / 10_000),
             _ => (number, times.unwrap_or(1)),
         };
-        Ok(Called { target: Target::Program(number), times })
+        Ok(Called { target: Target::Program(Label::Number(number)), times })
     }
 
     /// Calls a subprogram by M98 or M97.
@@ -581,8 +587,7 @@ impl<'a> Program<'a> {
             Target::Sequence(number) => {
                 self.flow.call_local(number, times, line, &mut self.variables)
             }
-            Target::Program(number) => {
-                let label = Label::Number(number);
+            Target::Program(label) => {
                 self.check_order(&label, control)?;
                 self.call(callee(label), control)
             }
@@ -780,19 +785,19 @@ impl<'a> Program<'a> {
 }
 
 /// A call of a subprogram by M98, M97 or M198.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct Called {
     target: Target,
     times: u32,
 }
 
 /// A subprogram that is called.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 enum Target {
     /// The blocks from a sequence number of the same program on (M97).
     Sequence(u32),
-    /// The program with a number.
-    Program(u32),
+    /// The program with a label.
+    Program(Label),
     /// A program of another file.
     File(usize, Subprogram),
 }

@@ -1,5 +1,6 @@
 //! The structure of a text: its programs and subprograms, and the lines that belong to one decision or loop.
 
+use super::expression::Language;
 use super::flow::{Place, line};
 use super::line::{Label, OWord, Role, begin, begins_title, loop_number, next, o_word, statement};
 use super::variables::Scope;
@@ -105,8 +106,17 @@ impl Structure {
                 }
                 _ => continue,
             };
-            // A label that is an expression can only be called.
-            let Ok(OWord { label, role }) = word else { continue };
+            // A label that is an expression can only be called. Words after a number are those of the block of a title (Fanuc).
+            let OWord { label, role } = match word {
+                Ok(word) => word,
+                Err(GcodeFault::ControlFlow { .. })
+                    if open.is_none() && scope.language != Some(Language::LinuxCnc) =>
+                {
+                    found.titles.push(here);
+                    continue;
+                }
+                Err(_) => continue,
+            };
             if role.is_decision() {
                 found.linuxcnc.get_or_insert(here.line);
                 if let Some(problem) = problem_of(line, &label, role, &groups, &done) {

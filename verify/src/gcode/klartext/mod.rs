@@ -412,6 +412,9 @@ impl<'a> Program<'a> {
                 }
                 2 | 30 => {
                     self.note_end(control);
+                    if let Some((line, true)) = self.flow.text_after() {
+                        control.notes.add(line.into(), NoteKind::OtherProgram);
+                    }
                     progress = Progress::Ended;
                 }
                 _ => {}

@@ -482,6 +482,15 @@ impl<'a> Flow<'a> {
         }
     }
 
+    /// Returns the line of another main program of the file by its title, than the one that ends.
+    pub(super) fn other_program(&self) -> Option<usize> {
+        let others = self.source.sections.iter().enumerate();
+        let mut others = others.filter(|(index, _)| *index != self.section);
+        others
+            .find(|(_, section)| section.is_main(self.text()))
+            .map(|(_, section)| section.start.line)
+    }
+
     /// Returns the line of the first text after the end of the main program that belongs to it.
     pub(super) fn text_after_end(&self) -> Option<usize> {
         let end = self.source.sections[self.section].end;

@@ -712,6 +712,9 @@ impl<'a> Program<'a> {
                 if let Some(line) = self.flow.text_after_end() {
                     control.notes.add(line.into(), NoteKind::TextAfterEnd);
                 }
+                if let Some(line) = self.flow.other_program() {
+                    control.notes.add(line.into(), NoteKind::OtherProgram);
+                }
                 return Progress::Ended;
             }
             // It has no parameters, and defines its variables again.

@@ -49,11 +49,17 @@ impl Resolver<'_> {
         if !(self.is_placed && self.was_at_top && self.is_at_top) || step.commanded[2] {
             return None;
         }
-        // A machine that has none has refused every motion.
+        // A machine without a chain to the gauge point has refused every motion.
         let chain = self.chain(0.0).ok()?.without_linear_limits();
         let turns = |k: usize| step.commanded[k] || self.joints[k].is_none() && self.has_axis(k);
+        // What swings with an unknown angle has no level; at the top of Z that is said.
+        if self.tilting(&turns).next().is_some() {
+            return None;
+        }
         let mut joints = self.joints.map(Option::unwrap_or_default);
-        joints[2] = self.setup.top.unwrap_or_default();
+        // The reference position can be lower than the end of the travel, and counts as the top, too.
+        let top = self.setup.top.unwrap_or_default();
+        joints[2] = self.setup.home.map_or(top, |home| home[2].min(top));
         let levels = self.levels_while(&chain, &joints, &turns);
         Some(BlindWay { levels, is_at_top: true })
     }

@@ -51,7 +51,12 @@ impl Resolver<'_> {
         let chain = self.chain(length)?;
         // The axis is higher than the tip by a length that is not known. Machine coordinates are those of the axis.
         let is_of_axis = is_known || matches!(step.path, StepPath::Machine(_));
-        let chain = if is_of_axis { chain } else { chain.without_lower_z_limit() };
+        let chain = match is_of_axis {
+            true => chain,
+            // The tool is a lever.
+            false if is_tip && self.has_head => chain.without_linear_limits(),
+            false => chain.without_lower_z_limit(),
+        };
         let guide = guide.unwrap_or(chain);
         let origin = if state.work_offset == WorkOffset::Standard(1) {
             // G54 is the frame of the part: the program may set it to the same values, and to no others.

@@ -442,7 +442,11 @@ impl<'a> Resolver<'a> {
         let commanded = axes.filter(|axis| step.commanded[axis.letter.index()]);
         let violations = commanded.filter_map(|axis| {
             let value = self.joints[axis.letter.index()]?;
-            LimitViolation::of_joint(axis.letter, value, axis.limits?)
+            let [low, high] = axis.limits?;
+            // The axis is higher than the tip by a length that is not known.
+            let is_tip = axis.letter == Letter::Z && self.height != Height::OfAxis;
+            let low = if is_tip { f64::NEG_INFINITY } else { low };
+            LimitViolation::of_joint(axis.letter, value, [low, high])
         });
         violations.collect()
     }
