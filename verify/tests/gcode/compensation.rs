@@ -792,7 +792,7 @@ fn arcs_beyond_their_end_are_refused_on_linuxcnc() {
 #[test]
 fn small_turns_need_a_stated_control() {
     let program =
-        "G21 G90 G94 G1 X-20 Y-20 F500\nG41 D7 X0 Y0\nX40\nX90 Y2.25\nG40 X130 Y40\nM30\n";
+        "G21 G90 G94 G1 X-20. Y-20. F500.\nG41 D7 X0. Y0.\nX40.\nX90. Y2.25\nG40 X130. Y40.\nM30\n";
     let radius_offsets = [(7, 5.0)].into();
     let setup = ControlSetup { radius_offsets, ..arcs() };
     for (control, is_read) in [("generic", false), ("fanuc", true), ("linuxcnc", true)] {
