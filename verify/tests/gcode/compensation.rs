@@ -798,11 +798,7 @@ fn small_turns_need_a_stated_control() {
     for (control, is_read) in [("generic", false), ("fanuc", true), ("linuxcnc", true)] {
         let rules = ControlRules::named(control).expect("a control");
         let result = run(program, &ControlSetup { rules, ..setup.clone() });
-        match result {
-            Ok(_) => assert!(is_read, "{control}"),
-            Err(error) => {
-                assert!(!is_read && is_fault(&error, "P0120 a corner"), "{control}: {error}")
-            }
-        }
+        let is_refused = result.is_err_and(|error| is_fault(&error, "P0120 a corner"));
+        assert_eq!(is_refused, !is_read, "{control}");
     }
 }
