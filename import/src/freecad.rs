@@ -42,7 +42,7 @@ pub(super) fn library(
     // One file can be listed many times.
     let max_bytes = FileKind::Library.max_bytes();
     let mut read_bytes = 0;
-    let found = tools.iter().map(|tool| {
+    let mut read = |tool: &Value| {
         let bit = find_bit(tool, folder, root)?;
         let problem = |reason: String| Problem::new(listed_name(tool), &reason);
         let too_long = || {
@@ -59,8 +59,11 @@ pub(super) fn library(
         }
         let bit = text(&content).and_then(|text| object(&text)).map_err(problem)?;
         read_bit(&bit, tool.get("nr"))
-    });
-    let found = found.collect();
+    };
+    let found = tools
+        .iter()
+        .map(|tool| read(tool).map_err(|problem| problem.numbered(tool.get("nr"))))
+        .collect();
     Ok(ListedBits { found, files })
 }
 

@@ -509,6 +509,21 @@ impl MachineProgram {
                 summary.bare_blocks.insert(step.block());
             }
             let arrives = matches!(resolved, Resolved::Arrival(..));
+            let has_length =
+                is_known || matches!(step.state.length, LengthOffset::On { length: Some(_), .. });
+            // What is followed with its length is checked as it is.
+            let is_followed = matches!(
+                resolved,
+                Resolved::Motions(_) | Resolved::Band(_) | Resolved::AnyRapid(_)
+            );
+            let is_change = matches!(resolved, Resolved::ToolChange | Resolved::Loaded(_));
+            if !(is_empty || is_change || is_followed && has_length)
+                && let Some(way) = execution.resolver.top_way(&step)
+            {
+                let tool = number.or(self.unnamed_tool);
+                let length = tool.and_then(|tool| self.setup.lengths.get(&tool).copied());
+                summary.add_top_way(TopWay { block: step.block(), tool: number, length, way });
+            }
             // The known part of a way and the other curves of an arc keep the limits, too.
             let further: Vec<&JointMotion> = match &resolved {
                 Resolved::Arrival(rest, _) | Resolved::Loaded(rest) => vec![rest],
@@ -548,11 +563,6 @@ impl MachineProgram {
                     }
                     let is_judged =
                         is_judged || execution.resolver.leaves_change(&step, cause, arrives);
-                    if let (Some(tool), Some(way)) = (number, execution.resolver.top_way(&step)) {
-                        let length = self.setup.lengths.get(&tool).copied();
-                        let way = TopWay { block: step.block(), tool, length, way };
-                        summary.add_top_way(way);
-                    }
                     summary.add_unknown(&step, cause, is_judged);
                     continue;
                 }
@@ -573,8 +583,6 @@ impl MachineProgram {
                 summary.empty_motions += 1;
             } else {
                 summary.use_of(&step).motions += 1;
-                let has_length = is_known
-                    || matches!(step.state.length, LengthOffset::On { length: Some(_), .. });
                 if is_placed && has_z_limits && !has_length && step.commanded[2] {
                     summary.z_limit_unchecked.get_or_insert(step.block());
                 }

@@ -847,8 +847,12 @@ faults! {
         /// A motion aside at the top of Z's travel, whose place is not known, over something that is higher than the tool's tip by its length
         /// or, if that is not stated, as it is drawn.
         #[code = V0612]
-        #[error("at the top of Z, T{tool} reaches lower than {name}: state its `length` and `home` of the axes, with which its motions there are checked")]
-        LowTop { name: String, tool: u32 },
+        #[error(
+            "at the top of Z, {} reaches lower than {name}: state its `length` and `home` of the axes, with which its motions there are \
+             checked",
+            tool.map_or("the tool".to_owned(), |tool| format!("T{tool}"))
+        )]
+        LowTop { name: String, tool: Option<u32> },
     }
 }
 

@@ -163,7 +163,7 @@ impl<'a> Job<'a> {
             });
             // The tip of a tool of unknown length is at least as low as the tool is drawn.
             let at_top = top_ways.iter().filter_map(move |TopWay { block, tool, length, way }| {
-                let info = self.tool_of(Some(*tool))?.tool.info();
+                let info = self.tool_of(*tool)?.tool.info();
                 let mut way = way.clone();
                 let below = length.unwrap_or(info.reach().high * info.unit.millimetres());
                 way.levels.iter_mut().for_each(|level| level.height -= below);

@@ -342,6 +342,11 @@ fn a_tool_of_unknown_length_is_not_above_all_at_the_top() {
         scene.job += G54;
         let patterns: &[&str] = if verdict == NONE { &["V0612 the clamp"] } else { &[] };
         scene.gives_by(stays("linuxcnc"), verdict, patterns);
+        // A tool that the program does not name is one, too.
+        let mut unnamed = Scene::new(&blocks.replace("T1 M6\n", ""));
+        unnamed = unnamed.obstacle([40.0, 40.0, 0.0], [45.0, 45.0, top]).with("anyway = false");
+        unnamed.job += G54;
+        assert_eq!(unnamed.check_by(stays("linuxcnc")).has("V0612"), verdict == NONE);
         // A stated length counts where only the machine knows the height (G30).
         let known = blocks.replace("G53 G0 Z0.\nG53 G0 X90.", "G91 G30 Z0.\nG90\nG53 G0 X90.");
         let mut scene = Scene::new(&known).obstacle([40.0, 40.0, 0.0], [45.0, 45.0, top]);

@@ -101,8 +101,8 @@ pub struct BlindWay {
 pub struct TopWay {
     /// The first block.
     pub block: BlockLine,
-    /// The tool.
-    pub tool: u32,
+    /// The tool; `None` before the program names one.
+    pub tool: Option<u32>,
     /// Its length, if it is stated.
     pub length: Option<f64>,
     /// The highest level at which the spindle's gauge point can be.

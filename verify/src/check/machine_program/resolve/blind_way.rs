@@ -3,7 +3,7 @@
 use super::super::{BlindWay, Level, StepFault};
 use super::{Band, Resolved, Resolver, UPRIGHT};
 use crate::gcode::{Position, Step};
-use crate::machine::{Axis, Chain, JointMotion, Joints, Side};
+use crate::machine::{Axis, Chain, JointMotion, Joints, Letter, Side};
 use nalgebra::Vector3;
 
 impl Resolver<'_> {
@@ -59,7 +59,8 @@ impl Resolver<'_> {
         let mut joints = self.joints.map(Option::unwrap_or_default);
         // The reference position can be lower than the end of the travel, and counts as the top, too.
         let top = self.setup.top.unwrap_or_default();
-        joints[2] = self.setup.home.map_or(top, |home| home[2].min(top));
+        let home = self.machine.axis(Letter::Z).and_then(|axis| axis.home);
+        joints[2] = home.map_or(top, |home| home.min(top));
         let levels = self.levels_while(&chain, &joints, &turns);
         Some(BlindWay { levels, is_at_top: true })
     }
