@@ -1,6 +1,8 @@
 //! Files of subprograms beside that of the program.
 
-use super::{GcodeError, GcodeFault};
+use super::error::combination;
+use super::{GcodeError, GcodeFault, shown};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// A file of subprograms that a program can call.
@@ -48,6 +50,32 @@ impl From<usize> for BlockLine {
 /// Returns the name of a file as a call on a control has it, without its folder.
 pub(super) fn without_folder(name: &str) -> &str {
     name.rsplit(['/', '\\']).next().unwrap_or(name).trim()
+}
+
+/// The folders in which calls seek programs, by the names of these. The files of a program have no folders: one answers for a name.
+#[derive(Clone, Debug, Default)]
+pub(super) struct CalledFolders(BTreeMap<String, String>);
+
+impl CalledFolders {
+    /// Checks that a call, whose text is `called`, names the same folder as the calls of the program `name` before it, or none.
+    ///
+    /// # Errors
+    /// If it names another one, in which another program can be.
+    pub(super) fn check(&mut self, called: &str, name: &str) -> Result<(), GcodeFault> {
+        let folder = called.trim().strip_suffix(without_folder(called)).unwrap_or_default();
+        let folder = folder.to_ascii_uppercase().replace('\\', "/");
+        if folder.is_empty() {
+            return Ok(());
+        }
+        let first = self.0.entry(name.to_ascii_uppercase()).or_insert_with(|| folder.clone());
+        if *first == folder {
+            return Ok(());
+        }
+        let condition = "another call seeks a program of this name in another folder";
+        let remedy =
+            "give the two programs different names, or the calls of one program the same folder";
+        Err(combination(shown(called), condition, remedy))
+    }
 }
 
 /// Returns the number of the file that a call on a control names, with its ending or without. Controls do not distinguish cases.

@@ -1,5 +1,6 @@
 //! The interpreter: executes the lines of a program in order, and returns their motions.
 
+use super::blank::Blank;
 use super::control::Control;
 use super::files::in_file;
 use super::note::ProgramNote;
@@ -154,17 +155,14 @@ impl<'a> Interpreter<'a> {
         }
     }
 
-    /// Returns the lowest and the highest corner of the blank that the program has stated so far as a box, in program coordinates and in
-    /// millimetres: by BLK FORM of Heidenhain Klartext, or by G30 and G31 of its DIN/ISO programs.
-    pub fn blank(&self) -> Option<[[f64; 3]; 2]> {
-        let [Some(low), Some(high)] = (match &self.front {
-            Front::Klartext(program) => program.blank,
-            Front::Iso(program) => program.blank,
-            Front::Sinumerik(_) => return None,
-        }) else {
-            return None;
-        };
-        (0..3).all(|axis| low[axis] < high[axis]).then_some([low, high])
+    /// Returns the blank that the program has stated so far as a box: by BLK FORM of Heidenhain Klartext, or by G30 and G31 of its DIN/ISO
+    /// programs.
+    pub fn blank(&self) -> Option<Blank> {
+        match &self.front {
+            Front::Klartext(program) => program.blank.blank(),
+            Front::Iso(program) => program.blank.blank(),
+            Front::Sinumerik(_) => None,
+        }
     }
 
     /// Executes the next line, and returns whether the program goes on.

@@ -54,6 +54,7 @@
 //! values are G17 G90 G91.1 G94 G98 G54, and no motion mode. Subprograms that M98 calls share the variables of
 //! their caller; macros and O-words have their own.
 
+mod blank;
 mod block;
 mod comment;
 mod control;
@@ -70,6 +71,7 @@ mod state;
 mod survey;
 mod words;
 
+pub use blank::{Blank, BlankDoubt};
 pub(crate) use comment::stated_tools;
 pub use comment::{StatedEnd, StatedTool};
 pub use control::Spindle;

@@ -8,7 +8,7 @@ use super::{
     Body, BodyFrame, BodyRole, Job, JobError, JobFileFault, JobGap, JobStock, JobTool, PART,
     StockShape,
 };
-use crate::gcode::WorkOffset;
+use crate::gcode::{BlankDoubt, BlockLine, WorkOffset};
 use crate::machine::{BodyShape, Machine};
 use crate::stock::RemainingPoints;
 use crate::{Gap, GapWeight, MachineProgram};
@@ -358,15 +358,16 @@ pub(super) fn mesh(file: &Path, unit: Unit) -> Result<Mesh, JobError> {
 /// Returns the blank that a program states, in a unit.
 fn blank(program: &Program, unit: Unit) -> Result<[Point3<f64>; 2], JobError> {
     let summary = program.readings().first().map(MachineProgram::summary);
+    let Some((summary, blank)) = summary.and_then(|summary| Some((summary, summary.blank?))) else {
+        return Err(JobError::NoBlank);
+    };
     // Its corners are in the coordinates in force there, which are those of the part under G54 alone.
-    if let Some(line) = summary.and_then(|summary| summary.other_offset) {
-        return Err(JobError::BlankOffset { line });
+    let offset = summary.other_offset.map(|block| (block, BlankDoubt::Offset));
+    if let Some((BlockLine { line, .. }, doubt)) = blank.doubt.or(offset) {
+        return Err(JobError::DoubtfulBlank { line, doubt });
     }
     let factor = Unit::Millimetre.factor_to(unit);
-    match summary.and_then(|summary| summary.blank) {
-        Some(corners) => Ok(corners.map(|corner| Point3::from(corner) * factor)),
-        None => Err(JobError::NoBlank),
-    }
+    Ok(blank.corners.map(|corner| Point3::from(corner) * factor))
 }
 
 impl StockEntry {

@@ -32,7 +32,7 @@ pub use report::{
 pub use stock::{CutStock, StockFinding};
 
 use crate::codes::faults;
-use crate::gcode::{BlockLine, ControlError, ControlRules, GENERIC, WorkOffset};
+use crate::gcode::{BlankDoubt, BlockLine, ControlError, ControlRules, GENERIC, WorkOffset};
 use crate::machine::{JointError, Letter, Link, MAX_NAME, Machine, MachineError, Side};
 use crate::program::ProgramError;
 use crate::stock::{RemainingPoints, Stock, StockError};
@@ -546,15 +546,14 @@ faults! {
             /// The program.
             file: String,
         },
-        /// A blank of a program that selects another work offset than G54.
+        /// A blank that may not be the material that is clamped.
         #[code = J0136]
-        #[error(
-            "line {line}: another work offset than G54 is in force, and the coordinates of the blank (`blank = true`) are that of one of them: state \
-             the stock by a `box` in the frame of the part"
-        )]
-        BlankOffset {
-            /// The line of the first step under it, 1-based.
+        #[error("line {line}: {doubt}: state the stock by a `box` in the frame of the part, in place of `blank = true`")]
+        DoubtfulBlank {
+            /// The line of the program, 1-based.
             line: usize,
+            /// The reason.
+            doubt: BlankDoubt,
         },
     }
 }

@@ -788,6 +788,31 @@ fn arcs_beyond_their_end_are_refused_on_linuxcnc() {
     }
 }
 
+/// The radius is that of the register on Fanuc and Haas, that of the tool on Sinumerik and Heidenhain, and of D0 on LinuxCNC.
+#[test]
+fn another_radius_than_that_of_the_tool_needs_a_stated_control() {
+    let run = |control: &str, d: u32| {
+        let program = format!(
+            "G21 G90 G94 G17\nT2 M6\nG0 X-20. Y-20.\nG1 G41 D{d} X0. Y0. F500.\nX40.\nG40 X60. Y-20.\nM30\n"
+        );
+        let rules = ControlRules::named(control).expect("a control");
+        let radius_offsets = [(1, 3.0), (2, 5.0), (3, 5.0)].into();
+        run(&program, &ControlSetup { rules, radius_offsets, ..arcs() }).map(|_| ())
+    };
+    for d in [2, 3] {
+        assert_eq!(run("generic", d), Ok(()), "{d}");
+    }
+    for d in [0, 1] {
+        assert!(
+            run("generic", d).is_err_and(|error| is_fault(&error, "P0120 the two differ")),
+            "{d}"
+        );
+    }
+    for control in ["fanuc", "linuxcnc"] {
+        assert_eq!(run(control, 1), Ok(()), "{control}");
+    }
+}
+
 /// A turn of less than 0.05 radians is a corner on Fanuc and none on LinuxCNC.
 #[test]
 fn small_turns_need_a_stated_control() {

@@ -188,3 +188,35 @@ fn steps_and_faults_name_the_line_of_the_file() {
     // A control finds one of two, and it is not known which.
     expect(&[file, inner, ("o8.txt", "O8\nM99\n")], 1, "P0143 O8 is in two files, 8.nc and o8.txt");
 }
+
+/// Files have no folders here: one answers for a name, so that calls of it name one folder.
+#[test]
+fn two_folders_of_one_name_are_refused() {
+    let heidenhain = |folders: [&str; 2]| {
+        let [first, second] = folders.map(|folder| format!("CALL PGM {folder}1.H\n"));
+        let program = format!("BEGIN PGM A MM\n{first}{second}END PGM A MM\n");
+        let called = "BEGIN PGM 1 MM\nL X+1 Y+2 Z+3 R0 FMAX\nEND PGM 1 MM\n";
+        execute("heidenhain", &program, &[("1.H", called)])
+    };
+    let haas = |folders: [&str; 2]| {
+        let [first, second] = folders.map(|folder| format!("M98 ({folder}SUB.NC)\n"));
+        let program = format!("O1\nG90 G54\n{first}{second}M30\n");
+        execute("haas", &program, &[("SUB.NC", "G0 X1. Y2. Z3.\nM99\n")])
+    };
+    let sinumerik = |folders: [&str; 2]| {
+        let [first, second] = folders.map(|folder| format!("EXTCALL (\"{folder}SUB.SPF\")\n"));
+        execute(
+            "siemens",
+            &format!("G90 G54\n{first}{second}M30\n"),
+            &[("SUB.SPF", "G0 X1 Y2 Z3\nM17\n")],
+        )
+    };
+    for execute in [&heidenhain as &dyn Fn([&str; 2]) -> _, &haas, &sinumerik] {
+        for folders in [["A/", "A/"], ["A/", "a/"], ["", "A/"]] {
+            assert_eq!(execute(folders).map(|steps: Vec<Step>| steps.len()), Ok(2), "{folders:?}");
+        }
+        let error = execute(["A/", "B/"]).expect_err("another folder");
+        assert!(is_fault(&error, "P0120 in another folder"), "{error}");
+    }
+    assert_eq!(heidenhain(["TNC:\\A\\", "TNC:/A/"]).map(|steps| steps.len()), Ok(2));
+}

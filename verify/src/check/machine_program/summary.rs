@@ -3,7 +3,7 @@
 use super::{Assumption, BlockError, MachineProgram, Obstacle};
 use crate::codes::faults;
 use crate::gcode::{
-    BlockLine, Choice, ControlSetup, LengthOffset, NoteKind, ProgramNote, Rule, Spindle,
+    Blank, BlockLine, Choice, ControlSetup, LengthOffset, NoteKind, ProgramNote, Rule, Spindle,
     StatedTool, Step, SubprogramLine, WorkOffset,
 };
 use crate::machine::{LimitViolation, SingularPass};
@@ -72,10 +72,10 @@ pub struct MachineSummary {
     pub(crate) direction_assumed: Option<BlockLine>,
     /// Singular passes, each with its line.
     pub singular: Vec<(BlockLine, SingularPass)>,
-    /// The lowest and the highest corner of the blank that the program states, in program coordinates and in millimetres.
-    pub blank: Option<[[f64; 3]; 2]>,
-    /// The first line with a step under another work offset than G54.
-    pub(crate) other_offset: Option<usize>,
+    /// The blank that the program states.
+    pub blank: Option<Blank>,
+    /// The first block with a step under another work offset than G54.
+    pub(crate) other_offset: Option<BlockLine>,
     /// The tools that comments of the program describe.
     pub stated_tools: Vec<StatedTool>,
     /// Notes of the interpreter.
@@ -613,7 +613,7 @@ impl MachineSummary {
     pub(super) fn add_offset(&mut self, step: &Step, setup: &ControlSetup) {
         let (state, offset) = (&step.state, step.state.work_offset);
         if !matches!(offset, WorkOffset::Standard(1) | WorkOffset::Off) {
-            self.other_offset.get_or_insert(step.line);
+            self.other_offset.get_or_insert(step.block());
         }
         let stated = match offset {
             WorkOffset::Standard(number @ 2..) => {

@@ -212,6 +212,9 @@ impl Control {
                 missing(code, "D with the number of a radius offset, in its block or before")
             })?,
         };
+        if dialect.is_none() {
+            self.check_radius_of_all(code, number)?;
+        }
         if number == 0 {
             return Ok(0.0);
         }
@@ -224,6 +227,21 @@ impl Control {
             return Err(combination(code, condition, "write the other of G41 and G42"));
         }
         Ok(side * radius)
+    }
+
+    /// Checks that all controls take the radius of a register: on Sinumerik and Heidenhain it is that of the tool, and D0 is the tool's
+    /// on LinuxCNC.
+    fn check_radius_of_all(&self, code: Code, number: u32) -> Result<(), GcodeFault> {
+        let radius = |number: u32| self.radius_offsets.get(&number);
+        let of_tool = self.state.tool.map(radius);
+        match number != 0 && of_tool.is_none_or(|of_tool| of_tool == radius(number)) {
+            true => Ok(()),
+            false => Err(combination(
+                code,
+                "the radius is that of the register after D on some controls, and that of the tool on others, and the two differ",
+                "state the control",
+            )),
+        }
     }
 
     /// Refuses words under which a compensated path is another one on some controls, or at which they stop.

@@ -29,6 +29,13 @@ impl Control {
         first != second
     }
 
+    /// Returns whether a shift, a rotation or a mirror image moves the coordinates of X, Y and Z.
+    pub(in crate::gcode) fn moves_coordinates(&self) -> bool {
+        self.state.shift[..3] != [Some(0.0); 3]
+            || self.state.rotation != Rotation::Off
+            || self.mirror != [None; 3]
+    }
+
     /// Returns whether polar coordinates or a mirror image are in force.
     fn has_figure(&self) -> bool {
         self.polar.is_some() || self.mirror != [None; 3]

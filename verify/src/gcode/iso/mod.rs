@@ -15,11 +15,12 @@ mod variables;
 pub use expression::ExpressionFault;
 pub(super) use flow::{Place, line};
 
+use super::blank::{BlankCorner, BlankWords};
 use super::block::{Block, Code, Group};
 use super::control::Control;
 use super::cursor::Cursor;
 use super::error::{combination, missing, not_read};
-use super::files::{self, in_file};
+use super::files::{self, CalledFolders, in_file};
 use super::interpreter::Progress;
 use super::note::NoteKind;
 use super::rules::{Choice, Rule};
@@ -50,8 +51,8 @@ pub(super) struct Program<'a> {
     line: Line,
     /// The number of the first switch for optional blocks.
     switch: Option<String>,
-    /// The lowest and the highest corner of the blank, in millimetres.
-    pub(super) blank: [Option<[f64; 3]>; 2],
+    pub(super) blank: BlankWords,
+    folders: CalledFolders,
 }
 
 impl<'a> Program<'a> {
@@ -102,7 +103,16 @@ impl<'a> Program<'a> {
         flow::check_files(&sources, files, is_linuxcnc(control))?;
         let flow = Flow::new(sources.into(), Repeated::new(setup));
         let (waiting, line) = (Vec::new(), Line::default());
-        Ok(Program { flow, waiting, files, variables, line, switch: None, blank: [None; 2] })
+        Ok(Program {
+            flow,
+            waiting,
+            files,
+            variables,
+            line,
+            switch: None,
+            blank: BlankWords::default(),
+            folders: CalledFolders::default(),
+        })
     }
 
     /// Returns the number of the file of a called subprogram, if it is not in the program's.
@@ -260,7 +270,11 @@ impl<'a> Program<'a> {
     /// Keeps a corner of the blank, and returns the words of its line that are executed.
     fn blank_corner(&mut self, line: BlankLine, control: &mut Control) -> String {
         let scale = control.modal.unit.millimetres();
-        self.blank[line.corner] = line.position.map(|position| position.map(|value| value * scale));
+        let position = line.position.map(|position| position.map(|value| value * scale));
+        let is_called = !self.waiting.is_empty();
+        let is_moved = control.moves_coordinates();
+        let corner = line.corner;
+        self.blank.corner(BlankCorner { corner, position, is_called, is_moved }, control);
         let word = ["G30", "G31"][line.corner].to_owned();
         control.notes.add(control.block(), NoteKind::PassedOver { word });
         line.modes
@@ -499,7 +513,7 @@ impl<'a> Program<'a> {
 
     /// Returns the subprogram of M98, M97 or M198; `file` is the name of a file beside it.
     fn called(
-        &self,
+        &mut self,
         block: &mut Block,
         tenths: u32,
         file: Option<String>,
@@ -518,6 +532,7 @@ impl<'a> Program<'a> {
         let times = block.take_whole('L', least, 99_999_999, expected)?;
         let Some(number) = number else {
             let Some(name) = file else { return Err(missing(word, needed)) };
+            self.folders.check(&name, files::without_folder(&name))?;
             // A program is named by its title, and one without a title by its file.
             let label = Label::of_title(&name);
             let target = match self.flow.find(&label, is_linuxcnc) {

@@ -15,10 +15,11 @@ mod line;
 mod motion;
 mod words;
 
+use super::blank::{BlankCorner, BlankWords};
 use super::block::{Block, Code};
 use super::control::{Control, StatedModes};
 use super::error::{combination, missing, not_read};
-use super::files::{self, in_file};
+use super::files::{self, CalledFolders, in_file};
 use super::interpreter::Progress;
 use super::note::NoteKind;
 use super::rules::{Choice, ControlRules, Rule};
@@ -68,8 +69,8 @@ pub(super) struct Program<'a> {
     tool_feed: Option<f64>,
     /// Set once a position in program coordinates was executed.
     positioned: bool,
-    /// The lowest and the highest corner of the blank, in millimetres.
-    pub(super) blank: [Option<[f64; 3]>; 2],
+    pub(super) blank: BlankWords,
+    folders: CalledFolders,
     /// The words of a block for the control.
     block: Block,
     /// The numbers of the M words of a block that the control executes.
@@ -149,7 +150,8 @@ impl<'a> Program<'a> {
             stated_lengths: setup.lengths.keys().copied().collect(),
             tool_feed: None,
             positioned: false,
-            blank: [None; 2],
+            blank: BlankWords::default(),
+            folders: CalledFolders::default(),
             block: Block::default(),
             codes: Vec::new(),
         })
@@ -172,6 +174,7 @@ impl<'a> Program<'a> {
         let Some(file) = files::find(self.files, name) else {
             return Err(GcodeFault::NoSubprogram { label: shown(name) });
         };
+        self.folders.check(name, files::without_folder(name))?;
         let flow = match self.called.get(&file) {
             Some(flow) => flow.clone(),
             None => {
@@ -302,7 +305,7 @@ impl<'a> Program<'a> {
             "TRANS" if cursor.take_word("DATUM") => self.trans_datum(&mut cursor, control)?,
             "FUNCTION" => self.mode(&mut cursor, control)?,
             "BLK" => {
-                self.blank_corner(&mut cursor)?;
+                self.blank_corner(&mut cursor, control)?;
                 let text = start.rest().split([';', '\n']).next().unwrap_or_default();
                 let word = unquoted(&text.split_whitespace().collect::<Vec<_>>().join(" "));
                 control.notes.add(control.block(), NoteKind::PassedOver { word });
@@ -335,11 +338,12 @@ impl<'a> Program<'a> {
 
     /// Reads a corner of the blank: `BLK FORM 0.1 Z X+0 Y+0 Z-40`, the lowest one, or `BLK FORM 0.2 X+100 Y+80 Z+0`. Blanks of another form
     /// have none.
-    fn blank_corner(&mut self, cursor: &mut Cursor) -> Result<(), GcodeFault> {
-        if !cursor.take_word("FORM") {
-            return Ok(());
-        }
-        let Some(corner) = ["0.1", "0.2"].iter().position(|number| cursor.take_text(number)) else {
+    fn blank_corner(&mut self, cursor: &mut Cursor, control: &Control) -> Result<(), GcodeFault> {
+        let mut corners = ["0.1", "0.2"].iter();
+        let is_form = cursor.take_word("FORM");
+        let corner = corners.position(|number| is_form && cursor.take_text(number));
+        let Some(corner) = corner else {
+            self.blank.other_form(control);
             return Ok(());
         };
         if corner == 0 {
@@ -352,9 +356,12 @@ impl<'a> Program<'a> {
             cursor.advance();
             position[usize::from(axis - b'X')] = Some(scale.length(cursor)?);
         }
-        if let ([Some(x), Some(y), Some(z)], true) = (position, cursor.is_at_end()) {
-            self.blank[corner] = Some([x, y, z]);
-        }
+        let [x, y, z] = position;
+        let position = x.zip(y).zip(z).map(|((x, y), z)| [x, y, z]);
+        let position = position.filter(|_| cursor.is_at_end());
+        let is_called = !self.waiting.is_empty();
+        let is_moved = control.moves_coordinates() || self.frame.is_mirrored();
+        self.blank.corner(BlankCorner { corner, position, is_called, is_moved }, control);
         Ok(())
     }
 

@@ -533,7 +533,7 @@ pub(super) fn no_target(label: &str) -> GcodeFault {
 }
 
 /// Returns the name of a subprogram without the parts that its file name adds.
-fn plain_name(name: &str) -> &str {
+pub(super) fn plain_name(name: &str) -> &str {
     let name = name.trim_matches('"').trim();
     let name = name.rsplit('/').next().unwrap_or(name);
     let upper = name.as_bytes();

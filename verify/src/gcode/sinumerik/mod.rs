@@ -19,7 +19,7 @@ mod words;
 use super::block::Block;
 use super::control::{Control, Hole};
 use super::error::{combination, missing, not_read};
-use super::files::{self, in_file, without_folder};
+use super::files::{self, CalledFolders, in_file, without_folder};
 use super::interpreter::Progress;
 use super::note::NoteKind;
 use super::rules::{Choice, Rule};
@@ -78,6 +78,7 @@ pub(super) struct Program<'a> {
     stepping: Option<usize>,
     /// The last value of each loop that counts, by the line of its `FOR`.
     ends: HashMap<usize, f64>,
+    folders: CalledFolders,
 }
 
 /// A caller of a subprogram in another file.
@@ -269,6 +270,7 @@ impl<'a> Program<'a> {
             interpolation: None,
             stepping: None,
             ends: HashMap::new(),
+            folders: CalledFolders::default(),
         })
     }
 
@@ -462,6 +464,7 @@ impl<'a> Program<'a> {
                     Some(quoted) => quoted,
                     None => self.stated_name("CALL", words)?,
                 };
+                self.folders.check(called, flow::plain_name(called))?;
                 match self.subprogram(called)? {
                     Some(callee) => self.call(callee, words)?,
                     None => return Err(no_subprogram(called)),
@@ -477,6 +480,7 @@ impl<'a> Program<'a> {
                 }
                 name.peek();
                 let name = name.quoted().unwrap_or_default();
+                self.folders.check(name, flow::plain_name(without_folder(name)))?;
                 let name = without_folder(name);
                 match self.found(name, |file| file != self.file)? {
                     Some(callee) => self.call(callee, words)?,
