@@ -8,7 +8,7 @@ use crate::diagnostic::{CheckKind, Diagnostic};
 use crate::formula::{CurveIndex, NEGATIVE, POSITIVE};
 use crate::geometry::function::CurveFunction;
 use crate::geometry::outline::{self, Point, minus, norm};
-use crate::geometry::polygon::{Polygon, centroid};
+use crate::geometry::polygon::{Polygon, centroid, width};
 use crate::model::{Model, Profile};
 use crate::regionalise;
 use crate::regionalise::overlay::{ConditionedPart, PieceDivider};
@@ -94,7 +94,8 @@ impl<'m> Cells<'m> {
         pieces: Vec<Rc<Piece>>,
     ) -> Cells<'m> {
         let geometry = profile.inner.section();
-        let tolerance = 16.0 * f64::EPSILON * size;
+        // Rounding of a large arc is that of its radius.
+        let tolerance = (16.0 * f64::EPSILON * size).max(geometry.tolerance());
         Cells { model, profile, geometry, shapes, size, tolerance, pieces }
     }
 
@@ -249,6 +250,19 @@ impl<'m> Cells<'m> {
         let allowed = MAX_DEVIATION_FRACTION * self.size;
         let owners = [piece.feature, feature];
         self.geometry.greatest_loss(owners, &piece.vertices, allowed, may_own)
+    }
+
+    /// Returns pieces without what their features own no points of, since others are nearer there.
+    pub(super) fn owned_parts(&self, pieces: &[Rc<Piece>]) -> Vec<Rc<Piece>> {
+        let owned = |piece: &Rc<Piece>| match piece.feature.filter(|_| !piece.is_point()) {
+            None => Some(Rc::clone(piece)),
+            Some(feature) => {
+                let vertices = self.geometry.possibly_owned(feature, &piece.vertices)?;
+                let piece = Piece { vertices, ..(**piece).clone() };
+                (width(&piece.vertices) > self.tolerance).then(|| Rc::new(piece))
+            }
+        };
+        pieces.iter().filter_map(owned).collect()
     }
 
     /// Returns whether the points of a piece may not be given to an owner: since depth would err by more than a plan may, or at a point

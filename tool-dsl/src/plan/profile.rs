@@ -209,7 +209,9 @@ impl Planner<'_> {
         }
         let (choice, divides_nothing) = self.choose(&relevant, samples, &mut candidates);
         let Some(Choice { curve, halves, zeros }) = choice else {
-            // Pieces that no curve separates are equally near, or are found by the deviation of the finished tree.
+            // Pieces that no curve separates are equally near, or have no points there, or are found by the deviation of the finished tree.
+            let owned = self.cells.owned_parts(pieces);
+            let pieces = if owned.is_empty() { pieces } else { &owned };
             let owner = self.least_wrong_owner(pieces);
             for piece in pieces.iter().filter(|piece| self.cells.is_wrong(piece, owner)) {
                 let line = Line::between(piece, pieces, self.cells.tolerance);

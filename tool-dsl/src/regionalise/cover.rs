@@ -394,6 +394,30 @@ impl Section<'_> {
         nearest
     }
 
+    /// Returns the part of a polygon beyond which a feature owns no point, since another one is nearer there: of those that are the
+    /// nearest at vertices, the ones whose distance, as that of the feature, is bounded by a linear function.
+    pub(crate) fn possibly_owned(&self, feature: usize, polygon: &Polygon) -> Option<Polygon> {
+        let middle = centroid(polygon);
+        // The points that a feature owns are as far as its line or circle.
+        let (own, true) = self.low(feature, middle) else { return Some(polygon.clone()) };
+        let nearest = |p: &Point| self.nearest(*p).0.filter(|nearest| *nearest != feature);
+        let mut rivals: Vec<usize> = polygon.iter().filter_map(nearest).collect();
+        rivals.sort_unstable();
+        rivals.dedup();
+        let mut owned = polygon.clone();
+        for rival in rivals {
+            let (distance, is_linear) = self.high(rival, middle);
+            if is_linear
+                && self.all_within(self.sector_sides(rival), &owned)
+                && self.all_in_front(rival, &owned)
+            {
+                let excess = |p: Point| distance.at(p) - own.at(p) + self.tolerance();
+                owned = clipped(&owned, &excess)?;
+            }
+        }
+        Some(owned)
+    }
+
     /// Returns two halves of a polygon that is too large for its cell.
     fn halves(&self, feature: usize, polygon: &Polygon) -> Option<[Option<Polygon>; 2]> {
         if area(polygon) < MIN_AREA * self.size * self.size {
@@ -444,10 +468,20 @@ impl Section<'_> {
     ) -> f64 {
         let mut greatest = 0.0f64;
         let (mut pending, mut searched) = (vec![(polygon.clone(), 0)], 0);
-        while let Some((polygon, halvings)) = pending.pop() {
-            let bound = self.bound_of_loss(own, other, &polygon);
+        while let Some((mut polygon, halvings)) = pending.pop() {
+            let mut bound = self.bound_of_loss(own, other, &polygon);
             // Only what is too much is worth the question whether there is any point.
-            if bound <= greatest || (bound > allowed && !may_own(&polygon)) {
+            if bound > greatest.max(allowed) {
+                let owned = match own {
+                    _ if !may_own(&polygon) => None,
+                    Some(own) => self.possibly_owned(own, &polygon),
+                    None => Some(polygon),
+                };
+                let Some(owned) = owned else { continue };
+                polygon = owned;
+                bound = self.bound_of_loss(own, other, &polygon);
+            }
+            if bound <= greatest {
                 continue;
             }
             let least = self.loss_at_vertices([own, other], &polygon);
