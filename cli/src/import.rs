@@ -110,13 +110,14 @@ impl Run<'_> {
         let library = Library::read(self.file)?;
         let tools = self.wanted(&library)?;
         let mut left_out = 0;
-        let mut written = Vec::new();
+        let (mut written, mut unwritten) = (Vec::new(), Vec::new());
         // A single tool that was asked for says nothing about the others.
         if self.only.is_none() {
             for skipped in library.skipped() {
                 self.skip(out, &skipped.name, &skipped.reason)?;
             }
             left_out = library.skipped().len();
+            unwritten.extend(library.skipped().iter().filter_map(|skipped| skipped.number));
         }
         if !self.json && !tools.is_empty() {
             line(out, HEAD)?;
@@ -139,11 +140,12 @@ impl Run<'_> {
                 Err(reason) => {
                     self.skip(out, tool.entry.label(), &reason)?;
                     left_out += 1;
+                    unwritten.extend(tool.entry.number);
                 }
             }
         }
         if let Target::Folder(folder) = &self.target {
-            write_numbers(folder, &written)?;
+            write_numbers(folder, &written, &unwritten)?;
         }
         Ok(left_out)
     }

@@ -53,7 +53,15 @@ pub(crate) fn read(
     refuse(&file, file.files())?;
     let mut libraries = Libraries::default();
     let inputs = JobInputs::read::<Failure>(file, |named| {
-        LoadedTool::load_from(&named.name, &arguments(named), &mut libraries)
+        let loaded = LoadedTool::load_from(&named.name, &arguments(named), &mut libraries)?;
+        // A folder of tools states nothing else.
+        if let Some(file) = named.library.as_deref().filter(|library| !library.is_dir()) {
+            let library = libraries.read(file, named.root.as_deref())?;
+            let entry = &library.select(&named.name.to_string_lossy())?.entry;
+            named.hand = named.hand.or(entry.left_handed.then_some(Hand::Left));
+            named.doubts = entry.doubts();
+        }
+        Ok(loaded)
     })?;
     // Those that a machine and earlier set-ups name are known by now.
     refuse(&inputs.file, inputs.further_files())?;
@@ -133,8 +141,9 @@ pub(crate) fn job_file(
     let tools = match (options.tool, library) {
         (Some(name), library) => {
             let (params, root) = params.into_parts();
-            let (motions, hand, allow) = (ToolSelection::All, Hand::Right, Vec::new());
-            JobTools::One(NamedTool { motions, name, library, params, root, hand, allow })
+            let (motions, hand, allow) = (ToolSelection::All, None, Vec::new());
+            let doubts = Vec::new();
+            JobTools::One(NamedTool { motions, name, library, params, root, hand, doubts, allow })
         }
         (None, Some(library)) if params.is_empty() => {
             JobTools::Numbered { library: Some(library), entries: BTreeMap::new() }
@@ -182,10 +191,10 @@ pub(crate) fn check<'a>(job: &'a Job<'_>, json: bool) -> Result<JobReport<'a>, F
 
 /// Checks a program, and returns the exit status.
 pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure> {
-    let Verify { job, part, check: options, sarif } = arguments;
+    let Verify { job: job_path, part, check: options, sarif } = arguments;
     let verbose = options.verbose;
-    let file = job_file(job.clone(), part, options)?;
-    let inputs = read(file, sarif.as_deref().as_slice(), job.as_deref().as_slice(), verbose)?;
+    let file = job_file(job_path.clone(), part, options)?;
+    let inputs = read(file, sarif.as_deref().as_slice(), job_path.as_deref().as_slice(), verbose)?;
     let job = inputs.job();
     let report = check(&job, json)?;
     message!("{}", report.headline());
@@ -211,7 +220,8 @@ pub(crate) fn verify(arguments: Verify, json: bool) -> Result<ExitCode, Failure>
     }
     print(&inputs, &report, verbose)?;
     if let Some(file) = sarif {
-        write_file(&file, serde_json::to_vec_pretty(&report.sarif())?)?;
+        let name = job_path.as_deref().unwrap_or(&inputs.file.program);
+        write_file(&file, serde_json::to_vec_pretty(&report.sarif(&name.to_string_lossy()))?)?;
     }
     Ok(exit(report.verdict()))
 }

@@ -156,8 +156,9 @@ impl Statement {
     }
 
     fn tool(&self) -> Found {
+        let name = || format!("cutter of line {}", self.line);
         self.read()
-            .map_err(|reason| Problem::new(&format!("cutter of line {}", self.line), &reason))
+            .map_err(|reason| Problem { number: self.number, ..Problem::new(&name(), &reason) })
     }
 
     fn read(&self) -> Result<Entry, String> {

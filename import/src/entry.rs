@@ -23,6 +23,8 @@ pub struct Entry {
     pub unit: Unit,
     /// The length from the tip to the holder, in `unit`.
     pub stickout: Option<f64>,
+    /// Set if the library states that it cuts while the spindle turns counter-clockwise (M4).
+    pub left_handed: bool,
     /// Assumptions, and contradictions of the library.
     pub notes: Vec<Note>,
     pub(super) cutter: Option<Cutter>,
@@ -76,6 +78,10 @@ pub struct Stated {
 pub enum Note {
     /// The library does not state this; the second text says what the imported tool has.
     Unstated(&'static str, String),
+    /// The library states a holder without segments, and the tool is drawn without it.
+    NoHolder,
+    /// The library says that the tool is left-handed. A job that selects it from the library knows that, a `.tool` file does not.
+    LeftHanded,
     /// Two statements of the library contradict each other. The last text says which was taken.
     Contradiction {
         /// The first statement.
@@ -118,6 +124,16 @@ pub enum Note {
 }
 
 impl Note {
+    /// Returns whether a program that was made with the library's tool may hit where the imported tool does not.
+    pub fn is_doubt(&self) -> bool {
+        match self {
+            Note::NoHolder | Note::Origin(_) => true,
+            // The narrower was taken.
+            Note::Contradiction { second, .. } => second.what == LARGEST_DIAMETER,
+            _ => false,
+        }
+    }
+
     /// Adds the note that a default was taken for a dimension, and returns it.
     pub(super) fn default_taken(notes: &mut Vec<Note>, name: &'static str, default: f64) -> f64 {
         notes.push(Note::Unstated(name, format!("taken: {}", decimal(default))));
@@ -136,6 +152,12 @@ impl fmt::Display for Note {
             Note::Unstated(what, taken) => {
                 write!(f, "the library does not state the {what}: {taken}")
             }
+            Note::NoHolder => f.write_str(
+                "the library does not state the segments of the holder: the tool is drawn without its holder",
+            ),
+            Note::LeftHanded => f.write_str(
+                "it is left-handed: state `hand = \"left\"` in a job that names its `.tool` file",
+            ),
             Note::Contradiction { first, second, taken } => write!(
                 f,
                 "the {} is {}, but the {} is {}; taken: the {taken}",
@@ -179,6 +201,9 @@ impl fmt::Display for Note {
     }
 }
 
+/// The name of the diameter up to which a face mill cuts.
+pub(super) const LARGEST_DIAMETER: &str = "largest diameter";
+
 impl Entry {
     /// Returns a tool of which nothing else is known.
     pub(super) fn new(
@@ -194,6 +219,7 @@ impl Entry {
             origin,
             unit,
             stickout: None,
+            left_handed: false,
             notes: Vec::new(),
             cutter: None,
             shaft: Vec::new(),
@@ -282,6 +308,18 @@ impl Entry {
                 taken: "teeth that fit",
             });
         }
+        if let Shape::Face { half_angle: 0.0, max_diameter, .. } = cutter.shape
+            && max_diameter > cutter.diameter
+        {
+            notes.push(Note::Contradiction {
+                first: Stated {
+                    what: "diameter of a face mill without a taper",
+                    value: cutter.diameter,
+                },
+                second: Stated { what: LARGEST_DIAMETER, value: max_diameter },
+                taken: "diameter",
+            });
+        }
         if let Some([wide, narrow]) = cutter.heights_of_diameter()
             && narrow > wide
         {
@@ -298,7 +336,15 @@ impl Entry {
                 taken: "radii and the flute length",
             });
         }
+        if self.left_handed {
+            notes.push(Note::LeftHanded);
+        }
         self.notes.extend(notes);
+    }
+
+    /// Returns the notes for which a program that was made with the library's tool may hit where the imported tool does not.
+    pub fn doubts(&self) -> Vec<String> {
+        self.notes.iter().filter(|note| note.is_doubt()).map(Note::to_string).collect()
     }
 
     /// Returns the diameter that the holder clamps.

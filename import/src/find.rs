@@ -31,6 +31,17 @@ pub enum FindError {
         /// The tools, each in backquotes.
         tools: Vec<String>,
     },
+    /// A tool with the number was left out when the folder was imported.
+    #[error(
+        "a tool {number} was left out when {folder} was imported: mend it in the library and import that again, or name one, in a job by \
+         `[tool.N] tool = \"FILE.tool\"`"
+    )]
+    LeftOut {
+        /// The number, as `T1`.
+        number: String,
+        /// The folder.
+        folder: String,
+    },
     /// A name that is that of no file directly in the folder of tools.
     #[error(
         "`{name}` is no name of a tool in {folder}: its tools are the files in it that end in `.tool`; name another as a file"
@@ -82,7 +93,7 @@ touchoff::debug_as_sentence!(FindError);
 /// The file of a folder that lists the numbers of its tools.
 const NUMBERS: &str = "tools.toml";
 
-/// The tools of a folder: file names by the number of the tool, as `T1`.
+/// The tools of a folder: file names by the number of the tool, as `T1`; none if one with the number was left out of the import.
 type Numbers = BTreeMap<String, Vec<String>>;
 
 impl Library {
@@ -121,7 +132,11 @@ pub fn find_in_folder(folder: &Path, name: &OsStr) -> Result<PathBuf, FindError>
     let list = within(folder, folder.join(NUMBERS))?;
     let name = name_of(name).to_ascii_uppercase();
     let mut numbers = read_numbers(folder)?;
-    let mut tools = numbers.remove(&name).unwrap_or_default();
+    let listed = numbers.remove(&name);
+    if listed.as_ref().is_some_and(Vec::is_empty) {
+        return Err(FindError::LeftOut { number: name, folder: shown() });
+    }
+    let mut tools = listed.unwrap_or_default();
     // A file with the name of a number is one more tool with this number.
     let own = file.file_name().map(|own| own.to_string_lossy().into_owned());
     if let Some(own) = own.filter(|own| !tools.contains(own) && file.is_file()) {
@@ -181,11 +196,15 @@ fn within(folder: &Path, file: PathBuf) -> Result<PathBuf, FindError> {
     }
 }
 
-/// Adds the numbers of imported tools to the list of a folder.
+/// Adds the numbers of imported tools to the list of a folder, and those of tools that were left out, which no file has then.
 ///
 /// # Errors
 /// If the list that is there cannot be read, or the new one cannot be written.
-pub fn write_numbers(folder: &Path, tools: &[&ImportedTool]) -> Result<(), FindError> {
+pub fn write_numbers(
+    folder: &Path,
+    tools: &[&ImportedTool],
+    left_out: &[u32],
+) -> Result<(), FindError> {
     // The folder is made with its first tool.
     if tools.is_empty() {
         return Ok(());
@@ -200,10 +219,15 @@ pub fn write_numbers(folder: &Path, tools: &[&ImportedTool]) -> Result<(), FindE
             files.push(tool.path());
         }
     }
+    for number in left_out {
+        numbers.insert(format!("T{number}"), Vec::new());
+    }
     if numbers.is_empty() {
         return Ok(());
     }
-    let mut text = "# The numbers of the tools in this folder.\n".to_owned();
+    let mut text =
+        "# The numbers of the tools in this folder; without a file, that of a tool that was left out.\n"
+            .to_owned();
     for (number, files) in &numbers {
         text += &format!("{number} = {files:?}\n");
     }

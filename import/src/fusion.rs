@@ -34,6 +34,8 @@ fn read_tool(tool: &Object, kind: &str, title: &str) -> Result<Entry, String> {
     }
     let empty = Object::new();
     let geometry = Geometry(object(tool, "geometry")?.unwrap_or(&empty));
+    // The hand of cut (ISO 13399): `false` is left.
+    entry.left_handed = geometry.0.get("HAND").and_then(Value::as_bool) == Some(false);
     entry.cutter = Some(cutter(kind, tool, &geometry, &mut entry.notes)?);
     entry.notes.extend(contradicted_expressions(tool, &geometry, unit)?);
     if let Some(shaft) = object(tool, "shaft")? {
@@ -58,8 +60,7 @@ fn read_tool(tool: &Object, kind: &str, title: &str) -> Result<Entry, String> {
     }
     if let Some(value) = object(tool, "holder")? {
         let Some(holder) = holder(value)? else {
-            let drawn = "the tool is drawn without its holder".to_owned();
-            entry.notes.push(Note::Unstated("segments of the holder", drawn));
+            entry.notes.push(Note::NoHolder);
             return Ok(entry);
         };
         // Without it nothing says where the holder begins.

@@ -191,6 +191,11 @@ impl Tool {
                 }
                 self.stack = Some(Stack { key: kind, object, sections: Vec::new() });
             }
+            "motion" => {
+                if attributes.get("clockwise") == Some("no") {
+                    self.geometry.insert("HAND".to_owned(), json!(false));
+                }
+            }
             "section" => {
                 if let Some(Stack { sections, .. }) = &mut self.stack {
                     let number = |key: &str| {
@@ -221,7 +226,7 @@ impl Tool {
             }
             "shaft" | "holder" => {
                 if let Some(Stack { key, mut object, sections }) = self.stack.take()
-                    && !sections.is_empty()
+                    && (!sections.is_empty() || key == "holder")
                 {
                     object.insert("segments".to_owned(), segments(&sections));
                     // A holder is in the tool's unit unless it states its own.
@@ -255,9 +260,9 @@ impl Tool {
     }
 }
 
-/// Returns the outline of sections, of which there is one at least, as Fusion's segments.
+/// Returns the outline of sections as Fusion's segments.
 fn segments(sections: &[Section]) -> Value {
-    let mut below = sections[0].diameter;
+    let mut below = sections.first().map_or(0.0, |first| first.diameter);
     let mut segments = Vec::new();
     for Section { diameter, length } in sections {
         segments.push(json!({

@@ -235,7 +235,8 @@ impl Library {
         let number: Option<u32> = wanted.trim_start_matches(['T', 't']).parse().ok();
         let has_number = |tool: &ImportedTool| number.is_some() && tool.entry.number == number;
         let is_selection = number.is_some_and(|number| wanted == format!("T{number}"))
-            && self.tools.iter().any(|tool| tool.entry.number.is_some());
+            && (self.tools.iter().any(|tool| tool.entry.number.is_some())
+                || self.skipped.iter().any(|skipped| skipped.number.is_some()));
         if is_selection {
             let is_left_out = self.skipped.iter().any(|skipped| skipped.number == number);
             return self.tools.iter().filter(|tool| !is_left_out && has_number(tool)).collect();

@@ -234,7 +234,7 @@ fn a_folder_of_tools_leads_nowhere_else() {
         symlink(target, tools.join(&link)).expect("a link");
     }
     assert!(matches!(tool.write_to(&tools), Err(ImportError::Outside { .. })));
-    let numbers = crate::write_numbers(&tools, &[tool]);
+    let numbers = crate::write_numbers(&tools, &[tool], &[]);
     assert!(matches!(numbers, Err(crate::FindError::Outside { .. })), "{numbers:?}");
     assert_eq!(std::fs::read_dir(&outside).expect("a folder").count(), 1);
 }

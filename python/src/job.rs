@@ -10,7 +10,7 @@ use serde::Serialize;
 use std::path::PathBuf;
 use touchoff_import::Libraries;
 use touchoff_verify::JobFile;
-use touchoff_verify::job::{JobError, JobInputs};
+use touchoff_verify::job::{Hand, JobError, JobInputs};
 
 /// A reason for which a job is not checked.
 #[derive(Debug, thiserror::Error)]
@@ -113,7 +113,17 @@ pub(crate) fn check_job(
         let mut libraries = Libraries::default();
         let inputs = JobInputs::read::<CheckError>(file, |named| {
             let (library, root) = (named.library.as_deref(), named.root.as_deref());
-            Ok(LoadedTool::named(&named.name, library, &named.params, root, &mut libraries)?)
+            let tool =
+                LoadedTool::named(&named.name, library, &named.params, root, &mut libraries)?;
+            // A folder of tools states nothing else.
+            if let Some(file) = library.filter(|library| !library.is_dir()) {
+                let read = libraries.read(file, root).map_err(LoadError::from)?;
+                let entry =
+                    &read.select(&named.name.to_string_lossy()).map_err(LoadError::from)?.entry;
+                named.hand = named.hand.or(entry.left_handed.then_some(Hand::Left));
+                named.doubts = entry.doubts();
+            }
+            Ok(tool)
         })?;
         let job = inputs.job();
         let report = job.check(&|_| ())?;
@@ -124,7 +134,7 @@ pub(crate) fn check_job(
             refusals: report.refusals().iter().map(ToString::to_string).collect(),
             summaries: report.summaries(),
             surface_only: report.is_surface_only(),
-            sarif: report.sarif(),
+            sarif: report.sarif(&path.to_string_lossy()),
         };
         serde_json::to_string(&checked).map_err(|error| CheckError::Keys(error.to_string()))
     })?;

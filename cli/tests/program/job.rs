@@ -150,6 +150,79 @@ fn the_job_of_the_page_becomes_clean() {
     assert!(stderr(&clean).contains("T2 at the vise: no findings"), "{}", stderr(&clean));
 }
 
+/// Hands, holders and origins that a library states are those of a job; JSON and SARIF say why there is no verdict, and of which job.
+#[test]
+fn a_job_knows_what_its_library_states() {
+    let bench = Bench::new();
+    bench.part("part.stl", &cuboid([-30.0, -20.0, -30.0], [30.0, 20.0, 0.0]));
+    let program = "G21 G90 G17 G94 G61 G54\nT1 M6\nS3000 M3\nG0 X-50 Y0\nG43 H1 Z5\nG1 X50 F600\nG0 Z50\nM5\nM2\n";
+    bench.write("m3.nc", program);
+    bench.write("m4.nc", program.replace("M3\n", "M4\n"));
+    let tapped = program.replace("G1 X50 F600", "X0\nG84 Z2 R5 F300\nG80");
+    bench.write("g84.nc", &tapped);
+    bench.write("g74.nc", tapped.replace("M3\n", "M4\n").replace("G84", "G74"));
+    let tool = |more: &str| {
+        format!(
+            "{{\"data\": [{{\"type\": \"flat end mill\", \"unit\": \"millimeters\", \"description\": \"mill\", \"geometry\": {{\"DC\": 10, \
+             \"LCF\": 20, \"LB\": 40, \"OAL\": 70, \"SFDM\": 10{more}, \"post-process\": {{\"number\": 1}}}}], \"version\": 2}}"
+        )
+    };
+    bench.write("right.json", tool("}"));
+    bench.write("left.json", tool(", \"HAND\": false}"));
+    bench.write(
+        "holder.json",
+        tool("}, \"holder\": {\"description\": \"ER32\", \"unit\": \"millimeters\"}"),
+    );
+    let job = |program: &str, library: &str, tool: &str, more: &[&str]| {
+        let control = if program.starts_with('g') { "fanuc" } else { "linuxcnc" };
+        let text = format!(
+            "part = \"part.stl\"\nunit = \"mm\"\nprogram = \"{program}\"\ncontrol = \"{control}\"\ntools = \"{library}\"\n{tool}"
+        );
+        let file = bench.write("job.toml", text);
+        touchoff(&[&["verify", &file, "--anyway"][..], more].concat())
+    };
+    for (program, library, stated, status) in [
+        ("m3.nc", "right.json", "", 0),
+        ("m4.nc", "right.json", "", 1),
+        ("m3.nc", "left.json", "", 1),
+        ("m4.nc", "left.json", "", 0),
+        // The job knows better than the library.
+        ("m3.nc", "left.json", "[tool.1]\nhand = \"right\"", 0),
+        ("g84.nc", "right.json", "", 0),
+        ("g84.nc", "left.json", "", 1),
+        ("g74.nc", "left.json", "", 0),
+        // Without a statement a tap has the hand of its thread.
+        ("g74.nc", "right.json", "", 0),
+        ("g74.nc", "right.json", "[tool.1]\nhand = \"right\"", 1),
+    ] {
+        let output = job(program, library, stated, &[]);
+        let said = format!("{program} {library} {stated}: {}{}", stdout(&output), stderr(&output));
+        assert_eq!(output.status.code(), Some(status), "{said}");
+        assert!(status == 0 || said.contains("V0106"), "{said}");
+    }
+    let file = bench.place("job.toml");
+    job("m3.nc", "holder.json", "", &[]);
+    let sarif = bench.place("job.sarif");
+    let output = touchoff(&["verify", &file, "--json", "--sarif", &sarif]);
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    let open = |output: &Output| {
+        let rows = objects(output).into_iter().filter(|row| row["open"] == true);
+        rows.map(|row| row["code"].as_str().expect("a code").to_owned()).collect::<Vec<_>>()
+    };
+    assert_eq!(open(&output), ["V0613"]);
+    let log: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(&sarif).expect("the log")).expect("JSON");
+    let run = &log["runs"][0];
+    assert_eq!(run["automationDetails"]["id"], format!("touchoff/{file}/"));
+    let notice = &run["invocations"][0]["toolExecutionNotifications"][0];
+    assert_eq!(notice["descriptor"]["id"], "V0613");
+    // A program that stays far from the part has a reason of the verdict alone.
+    bench.write("far.nc", program.replace("Z5", "Z900").replace("Z50", "Z950"));
+    job("far.nc", "right.json", "", &[]);
+    let output = touchoff(&["verify", &file, "--json"]);
+    assert_eq!((output.status.code(), open(&output)), (Some(2), vec!["V0203".to_owned()]));
+}
+
 /// Neither of the two commands that check a job writes what a stranger's asks for, if they are told so.
 #[test]
 fn a_job_that_is_only_read_writes_nothing() {

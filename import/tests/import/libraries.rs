@@ -1,8 +1,9 @@
 //! A tool library of every format, with every type that can be read.
 
 use serde_json::{Map, Value, json};
+use std::ffi::OsStr;
 use std::path::Path;
-use touchoff_import::Library;
+use touchoff_import::{FindError, ImportedTool, Library, find_in_folder, write_numbers};
 use touchoff_tests::fusion;
 
 /// A file of a tool library.
@@ -146,4 +147,55 @@ fn programs_select_tools_by_their_numbers() {
     assert_eq!(found(&[end_mill("wide", 1), end_mill("T1", 5)]), ["wide"]);
     assert_eq!(found(&[end_mill("T1", 5)]), [""; 0]);
     assert_eq!(found(&[end_mill("slim", 1), tool("form mill", "wide", 1)]), [""; 0]);
+    assert_eq!(
+        found(&[end_mill("T1", 0).replace("\"number\": 0", ""), tool("form mill", "wide", 1)]),
+        [""; 0]
+    );
+    // Of an APT library, too, and of a folder that was written from one.
+    let text = "UNITS/MM\nLOADTL/1\nCUTTER/6,3,0,3,0,0,30\nLOADTL/1\nTLDATA/BARREL,6\nLOADTL/2\nCUTTER/8,4,0,4,0,0,30\nFINI\n";
+    let library = Library::parse(Path::new("a.cls"), text.as_bytes()).expect("a library");
+    let count = |wanted: &str| library.find(wanted).len();
+    assert_eq!((library.skipped()[0].number, count("T1"), count("T2")), (Some(1), 0, 1));
+    let folder = tempfile::tempdir().expect("a folder");
+    let tools: Vec<&ImportedTool> = library.tools().iter().collect();
+    tools.iter().for_each(|tool| drop(tool.write_to(folder.path()).expect("written")));
+    write_numbers(folder.path(), &tools, &[1]).expect("written");
+    let found = |name: &str| find_in_folder(folder.path(), OsStr::new(name));
+    assert!(matches!(found("T1"), Err(FindError::LeftOut { .. })));
+    assert!(found("T2").is_ok_and(|file| file.is_file()));
+    // A library that is mended has the tool again.
+    write_numbers(folder.path(), &tools, &[]).expect("written");
+    assert!(found("T1").is_ok_and(|file| file.is_file()));
+}
+
+/// What a program that was made with the library's tool can hit, and the imported tool does not, is told from other notes; so is the hand.
+#[test]
+fn doubts_and_hands_of_tools_are_told() {
+    let of = |name: &str, text: &str| {
+        let library = Library::parse(Path::new(name), text.as_bytes()).expect("a library");
+        let entry = &library.tools()[0].entry;
+        (entry.left_handed, entry.doubts())
+    };
+    let hsm = |motion: &str, holder: &str| {
+        let text = format!(
+            "<tool-library><tool type=\"flat end mill\" unit=\"millimeters\"><nc number=\"1\"/>{motion}<body diameter=\"10\" \
+             flute-length=\"20\" body-length=\"40\" overall-length=\"70\" shaft-diameter=\"10\"/>{holder}</tool></tool-library>"
+        );
+        of("l.hsmlib", &text)
+    };
+    assert_eq!(hsm("<motion clockwise=\"yes\"/>", ""), (false, Vec::new()));
+    assert_eq!(hsm("<motion clockwise=\"no\"/>", ""), (true, Vec::new()));
+    for holder in ["<holder guid=\"h\"/>", "<holder guid=\"h\"></holder>"] {
+        assert_eq!(hsm("", holder).1.len(), 1, "{holder}");
+    }
+    let fusion = |more: &str| {
+        let text = format!(
+            "{{\"data\": [{{\"type\": \"face mill\", \"unit\": \"millimeters\", \"geometry\": {{\"DC\": 40, \"LCF\": 10, \"LB\": 40, \
+             \"OAL\": 70, \"SFDM\": 16{more}}}}}], \"version\": 2}}"
+        );
+        of("l.json", &text)
+    };
+    assert_eq!(fusion(", \"TA\": 45, \"DCX\": 50, \"HAND\": true"), (false, Vec::new()));
+    assert_eq!(fusion(", \"TA\": 0, \"DCX\": 40, \"HAND\": false"), (true, Vec::new()));
+    assert_eq!(fusion(", \"TA\": 0, \"DCX\": 50").1.len(), 1);
 }

@@ -41,22 +41,31 @@ def write(job, folder, program=None):
     folder
         An existing folder.
     program
-        The posted program; the job's output file if none is given.
+        The posted program; if none is given, the file to which FreeCAD posts the job.
     """
-    program = program or job.PostProcessorOutputFile
-    if not program or not os.path.isfile(program):
+    program = program or output_file(job)
+    if not os.path.isfile(program):
         raise NotReady(f"the job `{job.Label}` has no posted program at `{program}`: post-process it first")
     _stl([model.Shape for model in job.Model.Group], os.path.join(folder, "part.stl"))
     keys = {"part": "part.stl", "unit": "mm", "program": os.path.abspath(program), "tolerance": 0.01, "tool": {}}
     bits = []
+    known = {}
     for controller in _controllers(job):
         number = controller.ToolNumber
         stated = _stated(controller)
+        tool = stated or _bit(controller.Tool)
+        # Controllers of one tool have feeds and speeds of their own, and bits that are copies under other names.
+        shape = stated or {**tool, "name": ""}
+        if number in known:
+            if known[number] != shape:
+                raise NotReady(f"the job `{job.Label}` has two tools T{number}: give `{controller.Label}` another number")
+            continue
+        known[number] = shape
         if stated:
             keys["tool"][str(number)] = {"tool": stated}
         else:
             bits.append({"nr": number, "path": f"T{number}.fctb"})
-            _json(_bit(controller.Tool), os.path.join(folder, f"T{number}.fctb"))
+            _json(tool, os.path.join(folder, f"T{number}.fctb"))
     if bits:
         # The import of FreeCAD's own files knows the shapes of bits.
         _json({"version": 1, "tools": bits}, os.path.join(folder, "bits.fctl"))
@@ -71,6 +80,42 @@ def write(job, folder, program=None):
     if not keys["fixture"]:
         del keys["fixture"]
     return keys
+
+
+def output_file(job):
+    """Return the file to which FreeCAD posts a job: what the job or the preferences state, with their substitutes, and the document's
+    folder and name for what they do not state (FilenameGenerator of `Path/Post/Utils.py`)."""
+    folder, name = os.path.split(job.PostProcessorOutputFile or _preferred_file())
+    name, ending = os.path.splitext(name)
+    own = os.path.dirname(job.Document.FileName)
+    folder = (folder or own).replace("%D", own or ".").replace("%M", _macros())
+    path = os.path.join(folder, (name or job.Document.Label) + (ending or ".nc"))
+    # A job that is posted to one file has no number of a part, and %S is 0.
+    for key, value in (("%d", job.Document.Label), ("%j", job.Label), ("%S", "0")):
+        path = path.replace(key, value)
+    return os.path.abspath(path)
+
+
+def _preferred_file():
+    """Return the output file of FreeCAD's preferences."""
+    try:
+        from Path import Preferences
+    except ImportError:
+        try:
+            # FreeCAD before 0.21.
+            from PathScripts import PathPreferences as Preferences
+        except ImportError:
+            return ""
+    return Preferences.defaultOutputFile() or ""
+
+
+def _macros():
+    """Return the folder of the user's macros."""
+    try:
+        import FreeCAD
+    except ImportError:
+        return ""
+    return os.path.dirname(FreeCAD.getUserMacroDir())
 
 
 def _controllers(job):

@@ -486,7 +486,9 @@ impl Control {
         }
         let start = std::mem::replace(&mut self.position, end);
         let spindle = match self.modal.motion {
-            Some(Motion::Cycle(74 | 84)) => Spindle::Tapping,
+            Some(Motion::Cycle(84)) => Spindle::RightTap,
+            Some(Motion::Cycle(74)) => Spindle::LeftTap,
+            Some(Motion::Tap) => Spindle::Tapping,
             _ => self.spindle(rapid),
         };
         let state = Arc::clone(&self.state);

@@ -58,7 +58,7 @@ const WORDS: [Entry; 106] = [
     g(&[10], Group::Motion, "a line at feed rate"),
     g(&[20, 30], Group::Motion, "an arc or a helix, clockwise and counter-clockwise"),
     g(&[40], Group::Dwell, "a dwell"),
-    g(&[50, 51, 80], Group::PathControl, "a path mode of Fanuc, with P or Q (and R of G5.1) and without axes"),
+    g(&[50, 51, 80], Group::PathControl, "a path mode of Fanuc, with P or Q (and R of G5.1) and without axes, or with zeros of those that G5.1 smooths"),
     no_g(&[52, 53, 61, 62], "a spline", LINES),
     no_g(&[70], "diameter mode of a lathe", "post the program for a mill"),
     no_g(&[71, 1070], "a contour on a cylinder", MOTIONS),

@@ -1,7 +1,7 @@
 //! The bodies of a machine in a job: meshes that tools must not touch, and solids of revolution that must not touch meshes.
 
 use super::inputs::{self, JobBody, Load};
-use super::{BodyFrame, BodyRole, Hand, JobError, JobFile, NamedTool};
+use super::{BodyFrame, BodyRole, JobError, JobFile, NamedTool};
 use crate::ToolSelection;
 use crate::machine::{BodyShape, Link, Machine, MachineBody, Opponent, Side};
 use nalgebra::{Point3, Vector3};
@@ -162,13 +162,14 @@ pub(super) fn revolved<T, E: From<JobError>>(
         let known = SHAPES.iter().position(|shape| *shape.info().name == **name);
         let shape = match known {
             Some(index) => Shape::BuiltIn(index),
-            None => Shape::Loaded(load(&NamedTool {
+            None => Shape::Loaded(load(&mut NamedTool {
                 motions: ToolSelection::All,
                 name: name.clone(),
                 library: None,
                 params: Vec::new(),
                 root: job.root.clone(),
-                hand: Hand::Right,
+                hand: None,
+                doubts: Vec::new(),
                 allow: Vec::new(),
             })?),
         };

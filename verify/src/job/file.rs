@@ -94,8 +94,10 @@ pub struct NamedTool {
     pub params: Vec<String>,
     /// The folder within which its files lie: those that it mounts, if not in its own folder, and those that the library lists.
     pub root: Option<PathBuf>,
-    /// The hand of its cutting edges.
-    pub hand: Hand,
+    /// The hand of its cutting edges; `None` if it is not stated.
+    pub hand: Option<Hand>,
+    /// What its library says for which programs may hit where the tool as it is drawn does not.
+    pub doubts: Vec<String>,
     /// Depths that its surfaces may have in the part, beside those of the job.
     pub allow: Vec<(String, f64)>,
 }
@@ -115,9 +117,8 @@ pub struct ToolEntry {
     pub length: Option<f64>,
     /// Radius offset of cutter compensation under its number, in mm.
     pub radius_offset: Option<f64>,
-    /// The hand of its cutting edges, `right` if absent: that of the spindle's turn.
-    #[serde(default)]
-    pub hand: Hand,
+    /// The hand of its cutting edges. If absent, that of its library, or `right`.
+    pub hand: Option<Hand>,
     /// Allowances of its surfaces, beside those of the job.
     #[serde(default)]
     pub allow: BTreeMap<String, f64>,
@@ -572,6 +573,7 @@ impl JobFile {
                 params: entry.params,
                 root: self.root.clone(),
                 hand: entry.hand,
+                doubts: Vec::new(),
                 allow: entry.allow.into_iter().collect(),
             });
         }

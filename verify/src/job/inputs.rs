@@ -54,8 +54,8 @@ struct EarlierSetup {
 /// The largest number of set-ups before one. Each needs a part of the stack while those before it are read.
 const MAX_SETUPS: usize = 20;
 
-/// Loads a tool by its name.
-pub(super) type Load<'l, T, E> = &'l mut dyn FnMut(&NamedTool) -> Result<T, E>;
+/// Loads a tool by its name, and completes what its library states.
+pub(super) type Load<'l, T, E> = &'l mut dyn FnMut(&mut NamedTool) -> Result<T, E>;
 
 /// The part, another part, a fixture or a mesh of the machine, read.
 #[derive(Clone, Debug)]
@@ -173,13 +173,14 @@ impl JobBody {
 }
 
 impl<T: AsRef<dyn Tool>> JobInputs<T> {
-    /// Reads program, part, fixtures and stock of a job. `load` loads a tool by its name.
+    /// Reads program, part, fixtures and stock of a job. `load` loads a tool by its name, and adds its hand and its doubts as its
+    /// library states them.
     ///
     /// # Errors
     /// If a file cannot be read, or what they state does not fit together.
     pub fn read<E: From<JobError>>(
         file: JobFile,
-        mut load: impl FnMut(&NamedTool) -> Result<T, E>,
+        mut load: impl FnMut(&mut NamedTool) -> Result<T, E>,
     ) -> Result<JobInputs<T>, E> {
         JobInputs::read_after(file, &mut load, &mut Vec::new())
     }
@@ -194,9 +195,13 @@ impl<T: AsRef<dyn Tool>> JobInputs<T> {
         for (name, body) in body_files(&program) {
             file.check_within(name, body)?;
         }
-        let mut tools = Vec::new();
-        for named in file.used_tools(&program)? {
-            let tool = load(&named)?;
+        let (mut tools, mut gaps) = (Vec::new(), Vec::new());
+        for mut named in file.used_tools(&program)? {
+            let tool = load(&mut named)?;
+            let name = &tool.as_ref().info().name;
+            gaps.extend(named.doubts.iter().map(|doubt| {
+                JobGap::LibraryTool { tool: name.to_string(), doubt: doubt.clone() }.open(0)
+            }));
             tools.push((named, tool));
         }
         let meshes = &mut Meshes { unit: file.unit, known: HashMap::new() };
@@ -220,7 +225,7 @@ impl<T: AsRef<dyn Tool>> JobInputs<T> {
             bodies.extend(bodies::meshes(machine, file.unit)?);
             revolved = bodies::revolved(machine, &bodies, &file, load)?;
         }
-        let (mut stock, mut earlier_files, mut gaps) = (None, Vec::new(), Vec::new());
+        let (mut stock, mut earlier_files) = (None, Vec::new());
         if let Some(entry) = &file.stock {
             let left = match &entry.from {
                 Some(earlier) => {

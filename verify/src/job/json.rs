@@ -4,12 +4,15 @@
 //! Own types: the crate `serde-sarif` generates those of the whole standard while it is built, and findings need these.
 
 use super::machine::MachineRow;
-use super::report::{FindingDetail, JobFinding, JobReport, PairReport, Remedy, Severity, Verdict};
+use super::report::{
+    FindingDetail, JobFinding, JobReport, NoVerdict, PairReport, Remedy, Severity, Verdict,
+};
 use super::stock::StockRow;
 use super::{FindingRule, JobTool};
 use crate::gcode::SubprogramLine;
 use crate::{FindingGroup, FindingKind};
 use serde::Serialize;
+use std::borrow::Cow;
 use touchoff::Escaped;
 use touchoff::certify::Witness;
 use touchoff::tool::{Symmetry, ToolInfo};
@@ -30,22 +33,35 @@ impl JobReport<'_> {
         }
     }
 
-    /// Returns what is left open as objects for JSON.
+    /// Returns what is left open as objects for JSON, and the reasons beside it for which there is no verdict.
     pub fn gap_rows(&self) -> impl Iterator<Item = impl Serialize + '_> {
-        self.gaps.iter().map(|gap| GapRow {
+        let gaps = self.gaps.iter().map(|gap| GapRow {
             file: self.job.program.name(),
             line: gap.line,
             within: SubprogramRow::of(self, gap.within),
             kind: "not-checked",
             code: gap.code(),
             open: gap.is_open(),
-            reason: &gap.reason,
-        })
+            reason: Cow::Borrowed(&gap.reason),
+        });
+        let is_gap =
+            |reason: &NoVerdict| matches!(reason, NoVerdict::Unread { .. } | NoVerdict::Open(_));
+        let others = self.refusals().into_iter().filter(move |reason| !is_gap(reason));
+        gaps.chain(others.map(|reason| GapRow {
+            file: self.job.program.name(),
+            line: 0,
+            within: None,
+            kind: "not-checked",
+            code: reason.code(),
+            open: true,
+            reason: Cow::Owned(reason.to_string()),
+        }))
     }
 
-    /// Returns the findings in SARIF 2.1.0, for services of continuous integration.
-    pub fn sarif(&self) -> impl Serialize {
-        log(self)
+    /// Returns the findings in SARIF 2.1.0, for services of continuous integration. `job` tells the run from those of other jobs, which
+    /// such a service refuses to take together otherwise.
+    pub fn sarif(&self, job: &str) -> impl Serialize {
+        log(self, job)
     }
 }
 
@@ -316,7 +332,7 @@ struct GapRow<'a> {
     code: &'static str,
     /// Set if it allows no verdict.
     open: bool,
-    reason: &'a str,
+    reason: Cow<'a, str>,
 }
 
 #[derive(Serialize)]
@@ -328,8 +344,10 @@ struct Log {
 }
 
 #[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
 struct Run {
     tool: Tool,
+    automation_details: AutomationDetails,
     invocations: [Invocation; 1],
     results: Vec<Finding>,
 }
@@ -339,6 +357,25 @@ struct Run {
 struct Invocation {
     /// Set if there is a verdict.
     execution_successful: bool,
+    /// The reasons for which there is none.
+    tool_execution_notifications: Vec<Notification>,
+}
+
+#[derive(Serialize)]
+struct AutomationDetails {
+    id: String,
+}
+
+#[derive(Serialize)]
+struct Notification {
+    descriptor: Descriptor,
+    level: &'static str,
+    message: Text,
+}
+
+#[derive(Serialize)]
+struct Descriptor {
+    id: &'static str,
 }
 
 #[derive(Serialize)]
@@ -417,7 +454,7 @@ fn rules() -> Vec<Rule> {
 }
 
 /// Returns the findings of a job as a SARIF log.
-fn log(report: &JobReport<'_>) -> Log {
+fn log(report: &JobReport<'_>, job: &str) -> Log {
     let uri = uri(report.job.program.name());
     let results = report
         .findings()
@@ -444,7 +481,20 @@ fn log(report: &JobReport<'_>) -> Log {
         version: "2.1.0",
         runs: [Run {
             tool: Tool { driver },
-            invocations: [Invocation { execution_successful: report.verdict() != Verdict::None }],
+            // What stands before the last `/` is the category (section 3.17.3 of SARIF 2.1.0).
+            automation_details: AutomationDetails { id: format!("touchoff/{}/", Escaped(job)) },
+            invocations: [Invocation {
+                execution_successful: report.verdict() != Verdict::None,
+                tool_execution_notifications: report
+                    .refusals()
+                    .iter()
+                    .map(|reason| Notification {
+                        descriptor: Descriptor { id: reason.code() },
+                        level: "error",
+                        message: Text { text: message(&reason.to_string()) },
+                    })
+                    .collect(),
+            }],
             results,
         }],
     }

@@ -101,14 +101,15 @@ impl MachineFinding {
         // A program that never starts the spindle has a gap instead.
         let starts = summary.states_spindle();
         for &(block, tool_number, spindle) in &summary.spindle {
-            let hand = job.tool_of(tool_number).map_or(Hand::Right, |tool| tool.hand);
-            let fault = match (spindle, hand) {
+            let stated = job.tool_of(tool_number).and_then(|tool| tool.hand);
+            let fault = match (spindle, stated.unwrap_or_default()) {
                 (Spindle::NotStated, _) if !starts => continue,
                 (Spindle::NotStated | Spindle::Stopped, _) => SpindleFault::Off,
                 (Spindle::WithoutSpeed, _) => SpindleFault::NoSpeed,
-                (Spindle::CounterClockwise, Hand::Right) | (Spindle::Clockwise, Hand::Left) => {
-                    SpindleFault::Reverse
-                }
+                (Spindle::CounterClockwise, Hand::Right)
+                | (Spindle::Clockwise | Spindle::RightTap, Hand::Left) => SpindleFault::Reverse,
+                // The cycle says what the tap is, unless it is stated.
+                (Spindle::LeftTap, Hand::Right) if stated.is_some() => SpindleFault::Reverse,
                 _ => continue,
             };
             findings.push(MachineFinding {

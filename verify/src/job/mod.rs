@@ -184,8 +184,8 @@ pub struct JobTool<'a> {
     pub motions: ToolSelection,
     /// The tool.
     pub tool: &'a dyn Tool,
-    /// The hand of its cutting edges.
-    pub hand: Hand,
+    /// The hand of its cutting edges; `None` if neither the job nor its library states it: right, or that of its thread.
+    pub hand: Option<Hand>,
     /// Depths that its surfaces may have in the part, beside those of the job.
     pub allow: Vec<(String, f64)>,
 }
@@ -852,6 +852,10 @@ faults! {
             tool.map_or("the tool".to_owned(), |tool| format!("T{tool}"))
         )]
         LowTop { name: String, tool: Option<u32> },
+        /// What the library of a tool says: programs of its system have another origin, or it has a holder that is not drawn.
+        #[code = V0613]
+        #[error("{tool}: {doubt}")]
+        LibraryTool { tool: String, doubt: String },
     }
 }
 
@@ -996,7 +1000,7 @@ impl<'a> Body<'a> {
 impl<'a> JobTool<'a> {
     /// Creates the tool that makes all motions, whatever number the program gives it.
     pub fn of_all(tool: &'a dyn Tool) -> JobTool<'a> {
-        JobTool { motions: ToolSelection::All, tool, hand: Hand::Right, allow: Vec::new() }
+        JobTool { motions: ToolSelection::All, tool, hand: None, allow: Vec::new() }
     }
 
     /// Creates the tool with a number in the program.

@@ -538,6 +538,9 @@ fn words_without_motion_take_their_letters() {
         (LINUXCNC, "M68 E2 Q0.5"),
         (LINUXCNC, "M52 P1"),
         (FANUC, "G5.1 Q1 R5"),
+        (FANUC, "G5.1 Q3 X0 Y0 Z0"),
+        (FANUC, "G5.1 Q2 X0 Y0\nG5.1 Q0"),
+        (FANUC, "G5 P10000\nG5 P0"),
         (HAAS, "G98 G83 X0. Y0. Z1. R5. I2. J.5 K.5\nG80"),
         (HAAS, "G98 G83 X0. Y0. Z1. R5. Q2. K2.5\nG80"),
         (HAAS, "G98 G73 X0. Y0. Z1. R5. Q2. K7.5\nG80"),
@@ -546,5 +549,10 @@ fn words_without_motion_take_their_letters() {
         let scene = Scene::new(&format!("T1 M6\nS900 M3\nG43 H1\nG0 X0. Y0.\nZ50.\n{block}"));
         let checked = scene.placed().with("anyway = true").check(control);
         assert!(!checked.has("P01"), "{block}: {:#?}", checked.rows);
+    }
+    for block in ["G5.1 Q3 X10. Y0.", "G5.1 Q3 G1 X0.", "G5.1 X0. Y0.", "G5 P10001"] {
+        let scene = Scene::new(&format!("T1 M6\nS900 M3\nG43 H1\nG0 X0. Y0.\nZ50.\n{block}"));
+        let checked = scene.placed().with("anyway = true").check(FANUC);
+        assert!(checked.has("P0115"), "{block}: {:#?}", checked.rows);
     }
 }

@@ -548,7 +548,7 @@ impl MachineSummary {
     /// Notes what a motion at feed rate needs.
     pub(super) fn add_feed(&mut self, step: &Step, off_is_tip: bool) {
         let tool = step.state.tool;
-        // The interpreter has refused a tap whose spindle does not turn into the thread.
+        // The interpreter has refused a tap whose spindle does not turn into the thread; the tool may have the other hand.
         if step.spindle != Spindle::Tapping
             && !self
                 .spindle
@@ -772,7 +772,10 @@ impl MachineSummary {
     /// operator.
     pub fn states_spindle(&self) -> bool {
         let mut spindles = self.spindle.iter().map(|(.., spindle)| spindle);
-        spindles.any(|spindle| !matches!(spindle, Spindle::NotStated | Spindle::AfterTapping))
+        spindles.any(|spindle| {
+            use Spindle::{AfterTapping, LeftTap, NotStated, RightTap};
+            !matches!(spindle, NotStated | AfterTapping | RightTap | LeftTap)
+        })
     }
 }
 

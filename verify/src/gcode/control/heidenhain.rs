@@ -193,7 +193,7 @@ impl Control {
         end[2] = Some(level);
         let before = self.modal.motion;
         if is_tap {
-            self.modal.motion = Some(Motion::Cycle(84));
+            self.modal.motion = Some(Motion::Tap);
         }
         self.push(rapid, end, Z_ALONE, StepPath::Line);
         self.modal.motion = before;

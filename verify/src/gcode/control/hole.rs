@@ -63,7 +63,7 @@ impl Control {
         }
         let motion = self.modal.motion;
         if hole.tapping.is_some() {
-            self.modal.motion = Some(Motion::Cycle(84));
+            self.modal.motion = Some(Motion::Tap);
         }
         self.move_along(axis, false, depth);
         if hole.returns_at_feed {

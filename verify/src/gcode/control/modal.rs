@@ -56,6 +56,8 @@ pub(super) enum Motion {
     },
     /// A canned cycle, by its number.
     Cycle(u32),
+    /// The stroke of a tap, which a cycle with a name makes and no word selects.
+    Tap,
 }
 
 /// Meaning of F.
@@ -121,8 +123,19 @@ fn path_control(block: &mut Block, code: Code) -> Result<(), GcodeFault> {
         51 => 'Q',
         _ => 'P',
     };
+    // Smooth interpolation (G5.1 Q2) and nano smoothing (Q3) name axes by zeros, and nothing moves.
+    if code.tenths == 51 && block.has('Q') && block.code_of(Group::Motion).is_none() {
+        for axis in "XYZ".chars().filter(|axis| block.value(*axis) == Some(0.0)).collect::<Vec<_>>()
+        {
+            block.take(axis);
+        }
+    }
     // Fanuc's modes G5 P, G5.1 Q and G8 P. With axis words they are splines, without any a mode of a lathe.
     match block.take(switch) {
+        Some(number) if code.tenths == 50 && (10_001.0..=10_999.0).contains(&number) => {
+            let meaning = "a cycle that the control has stored (high-speed cycle machining)";
+            Err(not_read(code, meaning, "post the program with lines and arcs"))
+        }
         Some(_) if !block.has_any("XYZIJK") => {
             // The level of precision of Fanuc's G5.1.
             if code.tenths == 51 {

@@ -17,8 +17,12 @@ pub enum Spindle {
     Clockwise,
     /// It turns counter-clockwise (M4).
     CounterClockwise,
-    /// A tapping cycle turns it.
+    /// A tapping cycle turns it; the hand of its thread is not read.
     Tapping,
+    /// A cycle that taps a right-hand thread turns it (G84).
+    RightTap,
+    /// A cycle that taps a left-hand thread turns it (G74).
+    LeftTap,
     /// A tapping cycle has ended, which leaves it standing or turning, by the control and by rigid tapping.
     AfterTapping,
 }
