@@ -238,8 +238,8 @@ impl MachineProgram {
         }
         // The position of the machine before the program is unknown; axes that it lacks are at 0.
         setup.start = Letter::ALL.map(|letter| machine.axis(letter).is_none().then_some(0.0));
-        if is_placed && machine.axes().iter().all(|axis| axis.home.is_some()) {
-            setup.home = Some(machine.home().map(Option::unwrap_or_default));
+        if is_placed {
+            setup.home = machine.home();
         }
         let travel = machine.axis(Letter::Z).and_then(|axis| axis.limits);
         setup.top = travel.map(|[_, top]| top);
@@ -568,15 +568,11 @@ impl MachineProgram {
                 }
                 Resolved::Motions(motions) | Resolved::Band(Band { motions, .. }) => motions,
                 Resolved::AnyRapid(any) => {
-                    let AnyRapid { straight, edges } = *any;
-                    // The level of an empty spindle is the same at all rates, and it meets no stock.
-                    match edges {
-                        Some(_) => {}
-                        None => {
-                            summary.any_rotary_rapid.get_or_insert(step.block());
-                        }
+                    // That of an empty spindle is among its ways.
+                    if let Some(way) = execution.resolver.rotary_way.take().filter(|_| !is_empty) {
+                        MachineSummary::add_blind_way(&mut summary.rotary_ways, step.block(), way);
                     }
-                    vec![(straight, 0.0)]
+                    vec![(any.straight, 0.0)]
                 }
             };
             if is_empty {

@@ -65,7 +65,7 @@ pub(super) struct Control {
     /// The sum that a program of Heidenhain adds to the radius offset of its tool.
     radius_allowance: f64,
     tool_names: Arc<BTreeMap<String, u32>>,
-    home: Option<[f64; 6]>,
+    home: Position,
     second_home: Option<[f64; 6]>,
     /// Upper end of the travel of Z.
     top: Option<f64>,

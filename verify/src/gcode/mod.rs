@@ -145,8 +145,8 @@ pub struct ControlSetup {
     /// The numbers of tools, by the names that programs of Sinumerik (`T="NAME"`) and Klartext (`TOOL CALL "NAME"`) give them, in either
     /// case.
     pub tool_names: BTreeMap<String, u32>,
-    /// Position of G28 in machine coordinates.
-    pub home: Option<[f64; 6]>,
+    /// Position of G28 in machine coordinates, as far as it is known.
+    pub home: Position,
     /// Position of G30 in machine coordinates.
     pub second_home: Option<[f64; 6]>,
     /// Upper end of the travel of Z in machine coordinates, to which M140 MB MAX of Heidenhain moves.
@@ -186,7 +186,7 @@ impl Default for ControlSetup {
             radius_offsets: BTreeMap::new(),
             presets: BTreeMap::new(),
             tool_names: BTreeMap::new(),
-            home: None,
+            home: [None; 6],
             second_home: None,
             top: None,
             builder_point: None,

@@ -31,6 +31,7 @@ pub use report::{
 };
 pub use stock::{CutStock, StockFinding};
 
+use crate::check::CheckGap;
 use crate::codes::faults;
 use crate::gcode::{BlankDoubt, BlockLine, ControlError, ControlRules, GENERIC, WorkOffset};
 use crate::machine::{JointError, Letter, Link, MAX_NAME, Machine, MachineError, Side};
@@ -752,6 +753,10 @@ faults! {
     /// A reason for a gap of a job.
     #[derive(Clone, PartialEq, thiserror::Error)]
     pub(crate) enum JobGap {
+        /// A gap of a motion that depends on what the job checks it against.
+        #[code_of(0)]
+        #[error("{0}")]
+        Motion(CheckGap),
         /// Bodies of the machine that are not checked, as the page of `touchoff live` has none of their files.
         #[code = V0601]
         #[error(

@@ -7,7 +7,7 @@ use super::program::BlockMoves;
 use super::report::{JobReport, Moving, PairReport, Remedy};
 use super::stock::{CutStock, StockCut};
 use super::{Body, BodyFrame, BodyRole, Job, JobError, JobGap, JobStock, JobTool, STOCK};
-use crate::check::{ApproachSearch, MoveCheck, MoveRequest};
+use crate::check::{ApproachSearch, CheckGap, MoveCheck, MoveRequest};
 use crate::gcode::{BlockLine, WorkOffset};
 use crate::machine::{Axis, Link, Machine, Side};
 use crate::{
@@ -143,16 +143,22 @@ impl<'a> Job<'a> {
     }
 
     /// Returns the ways of each reading that are lower than a body or the stock: those to the first position and to a reference position
-    /// that is not known, of which X and Y are not known at one of their ends, and so what is between, and those of an empty spindle.
+    /// that is not known, of which X and Y are not known at one of their ends, and so what is between, those of rotary axes at rates that
+    /// are not known, and those of an empty spindle.
     fn low_ways(&self) -> impl Iterator<Item = (BlockLine, JobGap)> + '_ {
         let stock = self.stock.as_ref().map(JobStock::bounds);
         self.program.readings().iter().flat_map(move |reading| {
-            let MachineSummary { blind_ways, ways_home, empty_ways, top_ways, .. } =
+            let MachineSummary { blind_ways, ways_home, rotary_ways, empty_ways, top_ways, .. } =
                 reading.summary();
             // A tool may touch what it passes over, and the nose of a spindle may not.
-            let kinds: [(_, NamedGap, _); 3] = [
+            let kinds: [(_, NamedGap, _); 4] = [
                 (blind_ways, |name| JobGap::LowWay { name }, LEVEL_ROUNDING),
                 (ways_home, |name| JobGap::LowWayHome { name }, LEVEL_ROUNDING),
+                (
+                    rotary_ways,
+                    |name| JobGap::Motion(CheckGap::RotaryRapid { name }),
+                    LEVEL_ROUNDING,
+                ),
                 (empty_ways, |name| JobGap::LowSpindle { name }, -LEVEL_ROUNDING),
             ];
             let ways = kinds.into_iter().flat_map(|(ways, gap, least)| {
@@ -181,8 +187,6 @@ impl<'a> Job<'a> {
         stock: Option<[Point3<f64>; 2]>,
         least: f64,
     ) -> Option<&str> {
-        let unit = self.unit();
-        let part = way.levels.last()?;
         let carried = |index| self.revolved.iter().any(|moving| moving.against.contains(&index));
         let bodies = self.bodies.iter().enumerate();
         let bodies = bodies.filter(|(index, body)| body.meets_tools() || carried(*index));
@@ -196,8 +200,7 @@ impl<'a> Job<'a> {
             };
             Some((&*body.name, self.height_above(body, way)? + margin))
         });
-        let stock =
-            stock.map(|bounds| (STOCK, top(part, bounds) - part.height / unit.millimetres()));
+        let stock = stock.map(|bounds| (STOCK, self.stock_above(bounds, way)));
         let highest = bodies.chain(stock).max_by(|one, other| one.1.total_cmp(&other.1));
         highest.filter(|(_, height)| *height > least).map(|(name, _)| name)
     }
@@ -247,11 +250,29 @@ impl<'a> Job<'a> {
                 (false, true) => f64::INFINITY,
             });
         }
-        // Tilted by unknown angles, it swings.
-        let carriers: Vec<&Axis> = table().take(index).collect();
-        match way.levels.first().filter(|_| rotary == [0.0; 3] && origin.is_some()) {
-            Some(base) => Some(swing(&carriers, on_machine, unit) - base.height / unit),
-            None => Some(f64::INFINITY),
+        Some(match origin {
+            Some(_) if rotary == [0.0; 3] => {
+                swung_above(&table().take(index).collect::<Vec<_>>(), on_machine, way, unit)
+            }
+            _ => f64::INFINITY,
+        })
+    }
+
+    /// Returns the height of the stock's box above a way, as [`Job::height_above`] that of the part.
+    fn stock_above(&self, bounds: [Point3<f64>; 2], way: &BlindWay) -> f64 {
+        let unit = self.unit().millimetres();
+        let Some(part) = way.levels.last() else { return f64::INFINITY };
+        if part.height > f64::NEG_INFINITY {
+            return top(part, bounds) - part.height / unit;
+        }
+        let origin = self.program.readings().first().and_then(MachineProgram::part_origin);
+        match (self.program.machine(), origin) {
+            (Some(machine), Some([x, y, z, 0.0, 0.0, 0.0])) => {
+                let carriers = machine.axes().iter().filter(|axis| axis.side == Side::Table);
+                let on_machine = bounds.map(|corner| corner + Vector3::new(x, y, z) / unit);
+                swung_above(&carriers.collect::<Vec<_>>(), on_machine, way, unit)
+            }
+            _ => f64::INFINITY,
         }
     }
 
@@ -453,6 +474,12 @@ impl<'a> Job<'a> {
 /// Returns the height of a box along a level's direction.
 fn top(level: &Level, [low, high]: [Point3<f64>; 2]) -> f64 {
     (0..3).map(|k| (level.up[k] * low[k]).max(level.up[k] * high[k])).sum()
+}
+
+/// Returns how far a box on the machine, tilted by unknown angles of its carriers, reaches above a way.
+fn swung_above(carriers: &[&Axis], bounds: [Point3<f64>; 2], way: &BlindWay, unit: f64) -> f64 {
+    let base = way.levels.first();
+    base.map_or(f64::INFINITY, |base| swing(carriers, bounds, unit) - base.height / unit)
 }
 
 /// Returns the greatest Z of the machine that a box reaches at any angles of the rotary axes that carry it: that of the innermost axis and

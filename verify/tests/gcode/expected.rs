@@ -108,7 +108,7 @@ fn setup() -> ControlSetup {
         start: zero.map(Some),
         work_offsets: [Some(zero); 9],
         lengths: BTreeMap::new(),
-        home: Some(zero),
+        home: zero.map(Some),
         second_home: Some(zero),
         rules: ControlRules::named("linuxcnc").expect("a control"),
         ..ControlSetup::default()

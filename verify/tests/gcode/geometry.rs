@@ -342,7 +342,7 @@ fn changes_of_coordinates_do_not_move_the_machine() {
     setup.work_offsets[0] = Some([10.0, 20.0, 30.0, 1.0, 2.0, 3.0]);
     setup.work_offsets[1] = Some([-5.0, 7.0, 11.0, 0.0, 0.0, 4.0]);
     setup.lengths.insert(4, 100.0);
-    setup.home = Some([0.0, 0.0, 500.0, 0.0, 0.0, 0.0]);
+    setup.home = [0.0, 0.0, 500.0, 0.0, 0.0, 0.0].map(Some);
     let changes = [
         "G55",
         "G43 H4",

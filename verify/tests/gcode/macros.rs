@@ -558,7 +558,7 @@ fn positions_that_a_control_reports_otherwise_are_not_known() {
     }
     // A height under a length offset that a return may have ended.
     let lengths = BTreeMap::from([(1, 50.0)]);
-    let setup = ControlSetup { lengths, home: Some([0.0; 6]), ..setup(Choice::Iso) };
+    let setup = ControlSetup { lengths, home: [Some(0.0); 6], ..setup(Choice::Iso) };
     let text = "G21 G90 G0 G43 H1 Z9.\nG91 G28 Z0.\nG90 X#5003";
     let error = read(text, &setup).expect_err("a height");
     assert!(is_fault(&error, "P0211 #5003"), "{error}");

@@ -156,7 +156,7 @@ fn setups(dialect: Choice) -> [ControlSetup; 2] {
         start: [Some(0.0); 6],
         work_offsets: [Some([1.0, 2.0, 3.0, 0.0, 0.0, 0.0]); 9],
         lengths: BTreeMap::from([(1, 80.0), (2, 90.0), (5, 120.0), (7, 60.0)]),
-        home: Some([0.0, 0.0, 400.0, 0.0, 0.0, 0.0]),
+        home: [0.0, 0.0, 400.0, 0.0, 0.0, 0.0].map(Some),
         radius_offsets: BTreeMap::from([(1, 2.0), (2, 3.5)]),
         subprograms: vec![SubprogramFile { name: "sub.ngc".to_owned(), text: SUBPROGRAM.into() }],
         max_repeated: 10_000,

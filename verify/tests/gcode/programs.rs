@@ -80,7 +80,7 @@ fn read_folder(root: &Path, ending: Option<&str>, rules: ControlRules) -> Vec<Re
     let setup = ControlSetup {
         start: [Some(0.0); 6],
         work_offsets: [Some([0.0; 6]); 9],
-        home: Some([0.0; 6]),
+        home: [Some(0.0); 6],
         radius_offsets: (1..1000).map(|number| (number, 0.0)).collect(),
         rules,
         ..ControlSetup::default()

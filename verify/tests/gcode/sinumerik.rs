@@ -21,7 +21,7 @@ fn setup() -> ControlSetup {
         work_offsets,
         lengths: BTreeMap::from([(1, 80.0), (2, 50.0)]),
         tool_names: BTreeMap::from([("DRILL 8.5".to_owned(), 2)]),
-        home: Some([1.0, 2.0, 400.0, 0.0, 0.0, 0.0]),
+        home: [1.0, 2.0, 400.0, 0.0, 0.0, 0.0].map(Some),
         // Endless loops are refused sooner.
         max_repeated: 1_000_000,
         ..ControlSetup::default()

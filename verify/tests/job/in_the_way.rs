@@ -1,6 +1,8 @@
 //! Programs whose motion hits, though one reading of a word would not: each beside the same motion in other words.
 
-use crate::scene::{CLEAN, FANUC, FINDINGS, HEIDENHAIN, LINUXCNC, NONE, SIEMENS, Scene, native};
+use crate::scene::{
+    CLEAN, FANUC, FINDINGS, HAAS, HEIDENHAIN, LINUXCNC, NONE, SIEMENS, Scene, native,
+};
 use touchoff_verify::gcode::Choice;
 use touchoff_verify::machine::Machine;
 
@@ -235,4 +237,61 @@ fn a_retract_by_a_distance_is_no_way_home() {
         let scene = scene.obstacle([300.0, 300.0, 0.0], [310.0, 310.0, 10.0]);
         scene.gives(SIEMENS, verdict, &[gap]);
     }
+}
+
+/// The reference position of Z, below the axis, is that of Z alone: the way there leads down, whatever others state.
+#[test]
+fn the_way_to_a_reference_position_leads_down_to_it() {
+    for (home, verdict) in [(-200, FINDINGS), (-100, CLEAN)] {
+        let machine = format!(
+            "name = \"mill\"\naxis = [\n{{ letter = \"X\", kind = \"linear\", carries = \"table\" }},\n\
+             {{ letter = \"Y\", kind = \"linear\", carries = \"table\" }},\n\
+             {{ letter = \"Z\", kind = \"linear\", carries = \"tool\", limits = [-500, 0], home = {home} }},\n]"
+        );
+        // The axis stands at -170.
+        let text = "G21 G90 G17 G94 G54\nT1 M6\nS1000 M3\nG43 H1\nG0 X0 Y60 Z200\nY90\nG91 G28 Z0\nG90\nM2\n";
+        let scene = scene("a.nc", text, &machine, "[0, 0, -450]").with("anyway = true");
+        scene.obstacle([-9.0, 81.0, 0.0], [9.0, 99.0, 180.0]).gives(LINUXCNC, verdict, &[]);
+    }
+}
+
+/// A head that may be tilted rises to the reference position of Z from wherever it stands, as posts begin.
+#[test]
+fn a_retract_of_z_before_the_first_position_is_free_under_a_head() {
+    for retract in ["G91 G28 Z0.\nG90", "G53 G0 Z0."] {
+        for machine in ["B head + C table", "A-C fork head"] {
+            let rotary = if machine.starts_with('B') { "B0." } else { "A0." };
+            let text = format!(
+                "G17 G21 G40 G49 G80 G90 G94 G54\n{retract}\nT1 M6\nS9000 M3\nG0 {rotary} C0.\nX-6. Y0.\nG43 H1 Z20.\nG1 Z0.2 F500.\n\
+                 X6.\nG0 Z20.\nG91 G28 Z0.\nG90\nM30\n"
+            );
+            let scene = || named("a.nc", &text).placed().with(&format!("machine = \"{machine}\""));
+            scene().gives(HAAS, CLEAN, &[]);
+            scene().obstacle([3.0, -2.0, -2.0], [5.0, 2.0, 2.0]).gives(HAAS, FINDINGS, &["V0101"]);
+        }
+    }
+}
+
+/// Rapid traverse of a rotary axis with others at any rates is clear of what swings below the tool, and of nothing else.
+#[test]
+fn rapid_traverse_of_rotary_axes_is_judged_by_its_level() {
+    let text = |z: &str| {
+        format!(
+            "G17 G21 G40 G49 G80 G90 G94 G54\nG91 G28 Z0.\nG90\nT1 M6\nS9000 M3\nG0 X20. Y-30. A0.\nG43 H1 Z300.\nZ{z}\nX-6. Y0. A90.\n\
+             A0.\nZ20.\nG1 Z0.2 F500.\nX6.\nG0 Z20.\nG91 G28 Z0.\nG90\nM30\n"
+        )
+    };
+    for (z, verdict, gap) in [("150.", CLEAN, None), ("-0.5", NONE, Some("V0302 9 the part"))] {
+        let scene = named("a.nc", &text(z)).placed().with("machine = \"4-axis\"");
+        scene.gives(HAAS, verdict, gap.as_slice());
+    }
+    let scene = || named("a.nc", &text("150.")).placed().with("machine = \"4-axis\"");
+    // A bar on the table reaches higher while it turns.
+    scene().obstacle([30.0, 90.0, -20.0], [40.0, 99.0, -10.0]).gives(HAAS, CLEAN, &[]);
+    let high = scene().obstacle([30.0, 290.0, -20.0], [40.0, 299.0, -10.0]);
+    high.gives(HAAS, NONE, &["V0302 9 the clamp"]);
+    let stock = "[stock]\nbox = [[-3, -3, -400], [3, 3, 0]]\nspacing = 1\n";
+    let mut tall = scene();
+    tall.job += stock;
+    tall.gives(HAAS, NONE, &["V0302 9 the stock"]);
 }

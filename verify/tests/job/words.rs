@@ -420,7 +420,7 @@ fn a_return_of_other_axes_keeps_the_length() {
             start: [Some(0.0); 6],
             work_offsets: [Some([0.0; 6]); 9],
             lengths: BTreeMap::from([(1, 80.0)]),
-            home: Some([0.0; 6]),
+            home: [Some(0.0); 6],
             rules: rules("fanuc")
                 .with(Rule::ReferenceReturn, Choice::KeepsLength)
                 .with(Rule::LengthChange, Choice::MovesZ),

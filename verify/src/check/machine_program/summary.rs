@@ -22,8 +22,9 @@ pub struct MachineSummary {
     pub unchecked_tools: Vec<(u32, BlockLine)>,
     /// Motions that are not checked, by their cause.
     pub unknown: Vec<UnknownMotions>,
-    /// The first block in rapid traverse at rates that are not known of which one axis is rotary. Only its straight path is checked.
-    pub any_rotary_rapid: Option<BlockLine>,
+    /// The blocks of rapid traverse at rates that are not known of which one axis is rotary, with the level of the tip: the lowest of each
+    /// direction. Only their straight paths are checked.
+    pub rotary_ways: Vec<(BlockLine, BlindWay)>,
     /// The spindle during motions at feed rate, without those of taps: the line of the first by tool and spindle.
     pub spindle: Vec<(BlockLine, Option<u32>, Spindle)>,
     /// The block of the first feed without a tool length offset, in a program that names no tool or has no offset at all:
@@ -376,13 +377,13 @@ faults! {
         #[code = V0301]
         #[error("no motion of T{tool} is checked")]
         Unchecked { tool: u32 },
-        /// Rapid traverse of a rotary axis with others, whose path is not stated.
+        /// Rapid traverse of a rotary axis with others, whose path is not stated, lower than something that it can meet.
         #[code = V0302]
         #[error(
-            "the path of several axes in rapid traverse, one of them rotary, is checked on the straight line only: state `rapid` of the \
-             control, or the `rapid` rates of the machine's axes"
+            "the path of several axes in rapid traverse, one of them rotary, is checked on the straight line only, and the tool is lower there \
+             than {name} can be: state `rapid` of the control, or the `rapid` rates of the machine's axes, or move Z above it before"
         )]
-        RotaryRapid,
+        RotaryRapid { name: String },
         /// A length before the program states its unit.
         #[code = V0303]
         #[error("no G20 or G21 before a length, which is read in mm: write one, or state `unit` of the control")]
@@ -691,9 +692,6 @@ impl MachineSummary {
         let open = |block: BlockLine, gap: CheckGap| Gap::open(block, gap.code(), gap.to_string());
         for (tool, block) in &self.unchecked_tools {
             gaps.push(open(*block, CheckGap::Unchecked { tool: *tool }));
-        }
-        if let Some(block) = self.any_rotary_rapid {
-            gaps.push(open(block, CheckGap::RotaryRapid));
         }
         if let Some(block) = self.open_rules.get(&Rule::Unit) {
             gaps.push(open(*block, CheckGap::Unit));

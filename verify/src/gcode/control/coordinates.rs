@@ -211,7 +211,7 @@ impl Control {
                 Choice::Retracts => {
                     // A change to the tool in the spindle may leave Z on Haas: its height is unknown then, unless it stands at
                     // its home.
-                    let height = self.home.map(|home| home[2]);
+                    let height = self.home[2];
                     let present = self.state.to_machine(self.position)[2];
                     if is_same && present.is_none() {
                         return;

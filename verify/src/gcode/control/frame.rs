@@ -238,7 +238,7 @@ impl Control {
 
     /// Retracts before a swivel. The position of the swivel data record is taken as that of G28.
     fn retract_to_swivel(&mut self, retract: Retract) {
-        let home = self.home.map_or([None; 6], |home| home.map(Some));
+        let home = self.home;
         match retract {
             Retract::None => return,
             Retract::Z | Retract::All => {

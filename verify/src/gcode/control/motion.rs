@@ -338,7 +338,7 @@ impl Control {
     /// Returns whether Z is at the top of its travel or its reference position, in machine coordinates. Where the machine does not state
     /// its limits, the top is at 0.
     fn is_top(&self, z: f64) -> bool {
-        self.top.unwrap_or_default() == z || self.home.is_some_and(|home| home[2] == z)
+        self.top.unwrap_or_default() == z || self.home[2] == Some(z)
     }
 
     /// Notes whether the last step is the way home.
@@ -406,8 +406,8 @@ impl Control {
         let machine = self.state.to_machine(self.position)[2];
         let is_at_top = machine.is_some_and(|z| self.is_top(z));
         let is_homeward = named[2] || self.position[2].is_none() || is_at_top;
-        let home = if word == "G28" { self.home } else { self.second_home };
-        let target = home.map_or([None; 6], |home| home.map(Some));
+        let second = || self.second_home.map_or([None; 6], |home| home.map(Some));
+        let target = if word == "G28" { self.home } else { second() };
         self.move_machine(named, target, StepPath::Line);
         let step = self.pending.back_mut().expect("the step that was added");
         (step.is_return, step.is_homeward) = (true, is_homeward);

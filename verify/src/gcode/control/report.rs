@@ -74,7 +74,7 @@ impl Control {
             Report::Machine(_) if self.compensation.is_some() => None,
             Report::Machine(axis) => on(axis, self.state.to_machine(self.position)[axis]),
             Report::Origin(offset, axis) => on(axis, self.origin_of(offset).0[axis]),
-            Report::Home(axis) => on(axis, self.home.map(|home| home[axis])),
+            Report::Home(axis) => on(axis, self.home[axis]),
             Report::SecondHome(axis) => on(axis, self.second_home.map(|home| home[axis])),
             Report::Tool => self.state.tool.map(f64::from),
             Report::StagedTool => self.staged.map(f64::from),

@@ -2,7 +2,7 @@
 
 use super::super::{BlindWay, Level, StepFault};
 use super::{Band, Resolved, Resolver, UPRIGHT};
-use crate::gcode::{Position, Step};
+use crate::gcode::{Position, Step, Z_ALONE};
 use crate::machine::{Axis, Chain, JointMotion, Joints, Letter, Side};
 use nalgebra::Vector3;
 
@@ -28,10 +28,14 @@ impl Resolver<'_> {
             return None;
         }
         let is_at_top = ends.iter().all(|end| end[2].is_some_and(|z| self.is_top(z)));
+        // From wherever the operator has left it, Z alone goes to the top of its travel or to its reference position, at which the others
+        // are free.
+        let is_retract = step.commanded == Z_ALONE && !starts_at_level && self.is_at_top;
+        let is_aside = self.was_at_top && self.is_at_top && !step.commanded[2];
         let chain = self.chain.as_ref()?.1.without_linear_limits();
         let turns =
             |k: usize| ends.iter().any(|end| is_unknown(k, end)) || ends[0][k] != ends[1][k];
-        if is_at_top && self.tilting(&turns).next().is_some() {
+        if (is_at_top || is_retract || is_aside) && self.tilting(&turns).next().is_some() {
             return None;
         }
         let known = ends.iter().filter(|end| end[2].is_some());
@@ -63,6 +67,17 @@ impl Resolver<'_> {
         joints[2] = home.map_or(top, |home| home.min(top));
         let levels = self.levels_while(&chain, &joints, &turns);
         Some(BlindWay { levels, is_at_top: true })
+    }
+
+    /// Returns the level of rapid traverse from one joint position to another at any rates of its axes.
+    pub(super) fn way_at_any_rates(&self, chain: &Chain, joints: [Joints; 2]) -> BlindWay {
+        let [start, end] = joints;
+        let lowest = start[2].min(end[2]);
+        let levels = joints.map(|mut joints| {
+            joints[2] = lowest;
+            self.levels_while(&chain.without_linear_limits(), &joints, &|k| start[k] != end[k])
+        });
+        BlindWay { levels: Level::lower(&levels[0], &levels[1]), is_at_top: self.is_top(lowest) }
     }
 
     /// Returns the known motions of a step without a tool, with the levels of the spindle's gauge point.

@@ -113,6 +113,8 @@ pub(super) struct Resolver<'a> {
     pub(super) blind_way: Option<BlindWay>,
     /// The last step, if it leaves for a reference position that is not known, in more axes than Z.
     pub(super) way_home: Option<BlindWay>,
+    /// The last step, if it is rapid traverse of several axes whose rates are unknown, and one of them is rotary.
+    pub(super) rotary_way: Option<BlindWay>,
     /// The known motions of the last step, if the spindle is empty.
     pub(super) empty_way: Option<BlindWay>,
     /// The joint values after the last step, as far as they are known.
@@ -192,6 +194,7 @@ impl<'a> Resolver<'a> {
             was_at_top: false,
             blind_way: None,
             way_home: None,
+            rotary_way: None,
             empty_way: None,
             chain: None,
             joints,
@@ -204,7 +207,8 @@ impl<'a> Resolver<'a> {
     /// # Errors
     /// If the motion is not possible on the machine, or a length or an origin is missing.
     pub(super) fn resolve(&mut self, step: &Step) -> Result<Resolved, StepFault> {
-        (self.blind_way, self.way_home, self.empty_way) = (None, None, None);
+        (self.blind_way, self.way_home) = (None, None);
+        (self.rotary_way, self.empty_way) = (None, None);
         let is_empty = self.setup.is_spindle_empty(step.state.tool);
         if !is_empty && self.cause.is_of_empty() {
             self.cause = UnknownCause::TipHeight;
@@ -279,7 +283,9 @@ impl<'a> Resolver<'a> {
                     self.height = Height::OfAxis;
                 }
             }
-            self.is_at_top |= step.commanded[2] && self.joints[2].is_some_and(|z| self.is_top(z));
+            // At the reference position of Z other axes are free, too.
+            let is_high = |z: f64| self.is_top(z) || self.setup.home[2] == Some(z);
+            self.is_at_top |= step.commanded[2] && self.joints[2].is_some_and(is_high);
             self.leave_plane(step, &before);
             return Ok(Resolved::ToolChange);
         }
@@ -673,6 +679,9 @@ impl<'a> Resolver<'a> {
                     to[*k] = end[*k];
                     path::line(chain, [start, to])
                 });
+                if !is_linear {
+                    self.rotary_way = Some(self.way_at_any_rates(chain, joints));
+                }
                 // Ways that are straight span a box, the turn of a rotary axis does not.
                 let edges = is_linear.then(|| edges.collect()).transpose()?;
                 return Ok(Resolved::AnyRapid(Box::new(AnyRapid { straight, edges })));
