@@ -496,6 +496,7 @@ impl MachineProgram {
             let is_known = number.is_some_and(|tool| self.setup.lengths.contains_key(&tool));
             if step.state.length == LengthOffset::Off
                 && step.state.turns_with_workpiece()
+                && (self.off_is_tip || number.or(self.unnamed_tool).is_none())
                 && !is_known
                 && !is_empty
             {

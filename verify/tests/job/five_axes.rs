@@ -1,8 +1,9 @@
 //! Rotary axes, tool centre point control and tilted planes.
 
+use crate::in_the_way::named;
 use crate::scene::{
-    ANY, CLEAN, FANUC, FINDINGS, HAAS, LINUXCNC, NONE, SIEMENS, Scene, native, program, rules,
-    straight,
+    ANY, CLEAN, FANUC, FINDINGS, HAAS, HEIDENHAIN, LINUXCNC, NONE, SIEMENS, Scene, native, program,
+    rules, straight,
 };
 use touchoff_verify::gcode::{Choice, ControlRules, Rule};
 
@@ -168,7 +169,6 @@ fn tool_centre_point_control_needs_a_length_offset() {
         (FANUC, "G43.4 H0"),
         (FANUC, "G43.4"),
         (FANUC, "G43.5 H0"),
-        (FANUC, "G68.2 X0 Y0 Z0 I0 J0 K0\nG53.1"),
         (HAAS, "G234 H0"),
         (LINUXCNC, "M428"),
         (LINUXCNC, "G43 H1\nM428\nG49"),
@@ -184,6 +184,58 @@ fn tool_centre_point_control_needs_a_length_offset() {
     ] {
         scene(&format!("{start}\n{moves}")).gives(control, CLEAN, &[]);
     }
+}
+
+/// In an aligned plane without a length offset the gauge point is where the program says: posts move X and Y so before G43, and retract.
+#[test]
+fn the_gauge_point_moves_in_a_plane_without_a_length_offset() {
+    let scene = |blocks: &str| {
+        let text = format!("T1 M6\nS9000 M3\nG0 A0. C0.\n{blocks}");
+        Scene::new(&text).placed().with("machine = \"A-C trunnion\"\nanyway = true")
+    };
+    for tilt in [0, 30] {
+        let plane = format!("G68.2 X0 Y0 Z0 I0 J{tilt} K0\nG53.1");
+        let cut = |z: &str| {
+            format!(
+                "G53 G0 Z0.\nX-6. Y0.\n{plane}\nG0 X-6. Y0.\nG43 H1 Z20.\nG1 Z{z} F500.\nX-4.5\nG0 Z20.\nG69\nG49\nG53 Z0."
+            )
+        };
+        scene(&cut("2.")).gives(FANUC, CLEAN, &[]);
+        // The tip is 50 mm below the gauge point.
+        let without = cut("2.").replace("G43 H1 Z20.", "G0 Z60.").replace("Z2. F500", "Z40. F500");
+        scene(&without.replace("-4.5", "4.5")).gives(FANUC, FINDINGS, &["V0101"]);
+        scene(&without.replace("Z40. F500", "Z55. F500").replace("-4.5", "4.5")).gives(
+            FANUC,
+            CLEAN,
+            &[],
+        );
+    }
+    for retract in ["SUPA G0 Z0 D0", "G53 G0 Z0 D0", "D0\nSUPA G0 Z0", "SUPA G0 Z-100"] {
+        let text = format!(
+            "G17 G90 G94 G71\nT1\nM6\nG54\nS9000 M3 D1\nSUPA G0 Z0\nG0 A0 C0\nG0 X-6 Y0\n\
+             CYCLE800(0,\"\",0,57,0,0,0,30,0,0,0,0,0,1,0,1)\nD1\nG0 X-6 Y0\nG0 Z20\nG1 Z2 F500\nX-4.5\nG0 Z20\n{retract}\nCYCLE800()\nM30\n"
+        );
+        let scene =
+            named("a.mpf", &text).placed().with("machine = \"A-C trunnion\"\nanyway = true");
+        let checked = scene.check_by(native(Choice::DeselectsOffset));
+        assert!(!checked.has("V0416") && !checked.has("P01"), "{retract}: {:#?}", checked.rows);
+    }
+}
+
+/// After a tool change that leaves X and Y anywhere, a tilted plane is approached at the top of Z: first across the tool, then along it.
+#[test]
+fn a_tilted_plane_is_approached_from_the_top() {
+    let scene = |above: &str, cut: &str| {
+        let text = format!(
+            "BEGIN PGM A MM\nTOOL CALL 1 Z S5000\nL Z+0 R0 FMAX M91\nM3\nPLANE SPATIAL SPA-30 SPB+0 SPC+0 TURN FMAX SEQ-\n{above}\n\
+             L Z+20 R0 FMAX\nL Z{cut} R0 F500\nL X+4.5\nL Z+20 FMAX\nM5\nL Z+0 R0 FMAX M91\nPLANE RESET TURN FMAX\nM30\nEND PGM A MM\n"
+        );
+        named("a.h", &text).placed().with("machine = \"A-C trunnion\"")
+    };
+    scene("L X-6 Y+0 R0 FMAX", "+2").gives(HEIDENHAIN, CLEAN, &[]);
+    scene("L X-6 Y+0 R0 FMAX", "-1").gives(HEIDENHAIN, FINDINGS, &["V0101 9 the part"]);
+    // Only one of both is stated: where the tool comes down is not known.
+    scene("L X-6 R0 FMAX", "+2").gives(HEIDENHAIN, NONE, &["V0403"]);
 }
 
 /// Under TRAORI the tool axis turns by the axes, or on a great circle, which is not followed.

@@ -2,9 +2,10 @@
 
 use super::super::path::{self, Map};
 use super::super::{StepFault, UnknownCause};
-use super::{Located, Resolver, known, linear_only};
+use super::{Located, Resolver, UPRIGHT, known, linear_only};
 use crate::gcode::{
-    self, Choice, ControlState, LengthOffset, Position, Rotation, Rule, Step, StepPath, WorkOffset,
+    self, Choice, ControlState, LengthOffset, Position, Rotation, Rule, Step, StepPath, Tcp,
+    WorkOffset,
 };
 use crate::machine::{Chain, JointMotion, Joints, Letter, Setup, Side};
 use nalgebra::{Matrix3, Vector3};
@@ -137,8 +138,8 @@ impl Resolver<'_> {
             }
         }
         let lengths = match (state.length, known) {
-            // The tip would be that of a tool without length.
-            (LengthOffset::Off, Some(length)) if state.turns_with_workpiece() && length != 0.0 => {
+            // The tip would be that of a tool without length. In a plane the gauge point is where the program says.
+            (LengthOffset::Off, Some(length)) if state.tcp != Tcp::Off && length != 0.0 => {
                 return Ok(Located::Unknown(UnknownCause::TcpWithoutLength));
             }
             (LengthOffset::Off, Some(length)) => Lengths { length, offset: 0.0, is_known: true },
@@ -210,7 +211,23 @@ impl Resolver<'_> {
         for k in 0..3 {
             position[k] = linear.map(|linear| linear[k]);
         }
+        if linear.is_none() && frame.is_tip && !frame.has_unknown_lever {
+            position[2] = self.height_along_tool(frame);
+        }
         position
+    }
+
+    /// Returns Z of the tip in program coordinates where X and Y of the machine are not known, and move across it.
+    fn height_along_tool(&self, frame: &Frame) -> Option<f64> {
+        let [_, _, rest @ ..] = self.joints;
+        let [z, a, b, c] = rest;
+        let height = |x: f64, y: f64| {
+            let pose = frame.guide.pose(&[x, y, z?, a?, b?, c?]).ok()?;
+            let tip = frame.map.rotation.transpose() * (pose.tip().coords - frame.map.origin);
+            Some(tip.z)
+        };
+        let [from, beside @ ..] = [height(0.0, 0.0)?, height(1.0, 0.0)?, height(0.0, 1.0)?];
+        beside.iter().all(|other| (other - from).abs() <= UPRIGHT).then_some(from)
     }
 
     /// Keeps the joints that are known at an end that is not known in all axes.
