@@ -191,10 +191,8 @@ impl Tool {
                 }
                 self.stack = Some(Stack { key: kind, object, sections: Vec::new() });
             }
-            "motion" => {
-                if attributes.get("clockwise") == Some("no") {
-                    self.geometry.insert("HAND".to_owned(), json!(false));
-                }
+            "motion" if attributes.get("clockwise") == Some("no") => {
+                self.geometry.insert("HAND".to_owned(), json!(false));
             }
             "section" => {
                 if let Some(Stack { sections, .. }) = &mut self.stack {

@@ -60,7 +60,7 @@ impl JobReport<'_> {
 
     /// Returns the findings in SARIF 2.1.0, for services of continuous integration. `job` tells the run from those of other jobs, which
     /// such a service refuses to take together otherwise.
-    pub fn sarif(&self, job: &str) -> impl Serialize {
+    pub fn sarif(&self, job: &str) -> impl Serialize + use<> {
         log(self, job)
     }
 }

@@ -72,7 +72,7 @@ fn a_doubtful_blank_is_told() {
         let text = format!("BEGIN PGM A MM\n{lines}L X+1 Y+1 FMAX\nEND PGM A MM\n");
         let called = format!("BEGIN PGM B MM\n{called}L X+2 FMAX\nEND PGM B MM\n");
         let file = SubprogramFile { name: "B.H".into(), text: called.into() };
-        let setup = ControlSetup { subprograms: vec![file].into(), ..at_zero() };
+        let setup = ControlSetup { subprograms: vec![file], ..at_zero() };
         let mut interpreter = Interpreter::new(&text, &setup).expect("a program");
         let steps: Result<Vec<Step>, _> = interpreter.by_ref().collect();
         assert_eq!(steps.err(), None, "{text}");

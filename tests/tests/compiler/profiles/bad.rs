@@ -98,7 +98,8 @@ fn odd_profiles_are_exact() {
         "0 0, 4 6, 4 7, 9 12 about 4 12, 9 13, 4 19.666667, 4 23.666667, 0 23.666667",
     ];
     let up = others.map(Outline::parse).into_iter().chain([Outline::up(vec![sphere])]);
-    up.flat_map(|up| [Outline { down: true, ..up.clone() }, up]).for_each(assert_exact);
+    up.flat_map(|up| [Outline { down: true, ..up.clone() }, up])
+        .for_each(|outline| assert_exact(&outline));
 }
 
 /// More than half a ball on a neck, drawn as chords whose ends have a few decimals, as CAD writes them: about the centre, where all
@@ -116,16 +117,16 @@ fn balls_drawn_as_chords_are_exact() {
         let chords: Vec<String> = (1..=chords).map(vertex).collect();
         Outline::parse(&format!("0 0, {}, {neck}", chords.join(", ")))
     };
-    assert_exact(drawn(4.0, 77, 5, 0.35 * PI));
-    assert_exact(drawn(6.6, 75, 5, 0.25 * PI));
-    assert_exact(drawn(2.0, 48, 3, 0.4 * PI));
+    assert_exact(&drawn(4.0, 77, 5, 0.35 * PI));
+    assert_exact(&drawn(6.6, 75, 5, 0.25 * PI));
+    assert_exact(&drawn(2.0, 48, 3, 0.4 * PI));
 }
 
-fn assert_exact(outline: Outline) {
+fn assert_exact(outline: &Outline) {
     let text = outline.text();
     let tool = tool(&text).unwrap_or_else(|said| panic!("{text}\n{said}"));
     let planned = Interpreted::parse(&Source::new("t.tool", &text)).expect("as before");
-    let compared = compare(&outline, (&tool, &planned), 2_000, &mut Rng::new(41));
+    let compared = compare(outline, (&tool, &planned), 2_000, &mut Rng::new(41));
     compared.unwrap_or_else(|flaw| panic!("{flaw:?}\n{text}"));
 }
 
