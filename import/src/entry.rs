@@ -114,6 +114,13 @@ pub enum Note {
     },
     /// The origin of the library's tool is this far above its tip, while the tip is the origin here.
     Origin(f64),
+    /// A face mill without a taper has a largest diameter beyond its diameter, and is drawn with the latter.
+    NarrowFace {
+        /// The diameter.
+        diameter: f64,
+        /// The largest diameter.
+        largest: f64,
+    },
     /// A neck is thinner than a twentieth of the cutting diameter: it would break.
     ThinNeck {
         /// The diameter of the neck.
@@ -127,9 +134,7 @@ impl Note {
     /// Returns whether a program that was made with the library's tool may hit where the imported tool does not.
     pub fn is_doubt(&self) -> bool {
         match self {
-            Note::NoHolder | Note::Origin(_) => true,
-            // The narrower was taken.
-            Note::Contradiction { second, .. } => second.what == LARGEST_DIAMETER,
+            Note::NoHolder | Note::Origin(_) | Note::NarrowFace { .. } => true,
             _ => false,
         }
     }
@@ -191,6 +196,12 @@ impl fmt::Display for Note {
                  shift such a program by that much",
                 decimal(*above)
             ),
+            Note::NarrowFace { diameter, largest } => write!(
+                f,
+                "the largest diameter is {}, but without a taper the face mill is drawn as wide as its diameter of {}: correct one of them",
+                decimal(*largest),
+                decimal(*diameter)
+            ),
             Note::ThinNeck { neck, diameter } => write!(
                 f,
                 "the neck of {} under a diameter of {} is thinner than a neck can be: check the shoulder diameter",
@@ -200,9 +211,6 @@ impl fmt::Display for Note {
         }
     }
 }
-
-/// The name of the diameter up to which a face mill cuts.
-pub(super) const LARGEST_DIAMETER: &str = "largest diameter";
 
 impl Entry {
     /// Returns a tool of which nothing else is known.
@@ -311,14 +319,8 @@ impl Entry {
         if let Shape::Face { half_angle: 0.0, max_diameter, .. } = cutter.shape
             && max_diameter > cutter.diameter
         {
-            notes.push(Note::Contradiction {
-                first: Stated {
-                    what: "diameter of a face mill without a taper",
-                    value: cutter.diameter,
-                },
-                second: Stated { what: LARGEST_DIAMETER, value: max_diameter },
-                taken: "diameter",
-            });
+            let (diameter, largest) = (cutter.diameter, max_diameter);
+            notes.push(Note::NarrowFace { diameter, largest });
         }
         if let Some([wide, narrow]) = cutter.heights_of_diameter()
             && narrow > wide

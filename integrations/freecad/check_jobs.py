@@ -3,8 +3,10 @@
 `TOUCHOFF_ADDON` is this folder. Ends with status 1 if a verdict differs.
 """
 
+import json
 import os
 import sys
+import tempfile
 import traceback
 
 ADDON = os.environ["TOUCHOFF_ADDON"]
@@ -68,6 +70,34 @@ def check(name, tool=None):
     return report, marks
 
 
+def controllers():
+    """Write a job with two controllers of one bit, whose program is where FreeCAD posts it by default."""
+    with tempfile.TemporaryDirectory() as folder:
+        document = FreeCAD.newDocument("controllers")
+        job = PathJob.Create("Job", [bracket(document)])
+        document.saveAs(os.path.join(folder, "bracket.FCStd"))
+        copy = document.copyObject(job.Tools.Group[0], True)
+        copy.ToolNumber = job.Tools.Group[0].ToolNumber
+        job.Proxy.addToolController(copy)
+        job.PostProcessorOutputFile = "%D/%d-posted.ngc"
+        posted = os.path.join(folder, f"{document.Label}-posted.ngc")
+        with open(posted, "w") as file:
+            file.write("M2\n")
+        keys = jobs.write(job, folder)
+        assert os.path.samefile(keys["program"], posted), keys
+        with open(os.path.join(folder, "bits.fctl")) as file:
+            bits = json.load(file)["tools"]
+        assert len(job.Tools.Group) == 2 and len(bits) == 1, bits
+        copy.Tool.Diameter = copy.Tool.Diameter.Value + 1
+        try:
+            jobs.write(job, folder)
+        except jobs.NotReady as error:
+            assert "another number" in str(error)
+        else:
+            raise AssertionError("two tools of one number are refused")
+        FreeCAD.closeDocument(document.Name)
+
+
 def main():
     mill = os.path.join(JOBS, "mill.tool")
     for name, verdict, surface, body in (
@@ -88,6 +118,7 @@ def main():
     report, _ = check("shank")
     assert report.verdict == "clean", (report.refusals, report.findings)
     print(f"with FreeCAD's own bit: {report.verdict}")
+    controllers()
     try:
         check("clean", "/none/mill.tool")
     except jobs.NotReady as error:
