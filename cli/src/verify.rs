@@ -58,7 +58,7 @@ pub(crate) fn read(
         if let Some(file) = named.library.as_deref().filter(|library| !library.is_dir()) {
             let library = libraries.read(file, named.root.as_deref())?;
             let entry = &library.select(&named.name.to_string_lossy())?.entry;
-            named.hand = named.hand.or(entry.left_handed.then_some(Hand::Left));
+            named.hand = named.hand.or(entry.left_handed.map(Hand::of));
             named.doubts = entry.doubts();
         }
         Ok(loaded)

@@ -23,8 +23,8 @@ pub struct Entry {
     pub unit: Unit,
     /// The length from the tip to the holder, in `unit`.
     pub stickout: Option<f64>,
-    /// Set if the library states that it cuts while the spindle turns counter-clockwise (M4).
-    pub left_handed: bool,
+    /// Whether it cuts while the spindle turns counter-clockwise (M4), if the library states that.
+    pub left_handed: Option<bool>,
     /// Assumptions, and contradictions of the library.
     pub notes: Vec<Note>,
     pub(super) cutter: Option<Cutter>,
@@ -78,8 +78,20 @@ pub struct Stated {
 pub enum Note {
     /// The library does not state this; the second text says what the imported tool has.
     Unstated(&'static str, String),
-    /// The library states a holder without segments, and the tool is drawn without it.
-    NoHolder,
+    /// The library states a holder or a shaft without its segments.
+    NotDrawn {
+        /// The holder or the shaft.
+        what: &'static str,
+        /// How the tool is drawn.
+        drawn: &'static str,
+    },
+    /// A dimension of Fusion 360 differs from its expression, from which Fusion 360 computes it anew.
+    OtherExpression {
+        /// The dimension, which was taken.
+        stated: Stated,
+        /// The value of its expression.
+        expression: f64,
+    },
     /// The library says that the tool is left-handed. A job that selects it from the library knows that, a `.tool` file does not.
     LeftHanded,
     /// Two statements of the library contradict each other. The last text says which was taken.
@@ -133,10 +145,13 @@ pub enum Note {
 impl Note {
     /// Returns whether a program that was made with the library's tool may hit where the imported tool does not.
     pub fn is_doubt(&self) -> bool {
-        match self {
-            Note::NoHolder | Note::Origin(_) | Note::NarrowFace { .. } => true,
-            _ => false,
-        }
+        matches!(
+            self,
+            Note::NotDrawn { .. }
+                | Note::Origin(_)
+                | Note::NarrowFace { .. }
+                | Note::OtherExpression { .. }
+        )
     }
 
     /// Adds the note that a default was taken for a dimension, and returns it.
@@ -157,8 +172,14 @@ impl fmt::Display for Note {
             Note::Unstated(what, taken) => {
                 write!(f, "the library does not state the {what}: {taken}")
             }
-            Note::NoHolder => f.write_str(
-                "the library does not state the segments of the holder: the tool is drawn without its holder",
+            Note::NotDrawn { what, drawn } => {
+                write!(f, "the library does not state the segments of the {what}: {drawn}")
+            }
+            Note::OtherExpression { stated: Stated { what, value }, expression } => write!(
+                f,
+                "the {what} is {}, but its expression is {}; taken: the former",
+                decimal(*value),
+                decimal(*expression)
             ),
             Note::LeftHanded => f.write_str(
                 "it is left-handed: state `hand = \"left\"` in a job that names its `.tool` file",
@@ -227,7 +248,7 @@ impl Entry {
             origin,
             unit,
             stickout: None,
-            left_handed: false,
+            left_handed: None,
             notes: Vec::new(),
             cutter: None,
             shaft: Vec::new(),
@@ -338,7 +359,7 @@ impl Entry {
                 taken: "radii and the flute length",
             });
         }
-        if self.left_handed {
+        if self.left_handed == Some(true) {
             notes.push(Note::LeftHanded);
         }
         self.notes.extend(notes);

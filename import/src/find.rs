@@ -2,6 +2,7 @@
 
 use super::{ImportedTool, Library};
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::ffi::OsStr;
 use std::io;
 use std::path::{Component, Path, PathBuf};
@@ -33,8 +34,8 @@ pub enum FindError {
     },
     /// A tool with the number was left out when the folder was imported.
     #[error(
-        "a tool {number} was left out when {folder} was imported: mend it in the library and import that again, or name one, in a job by \
-         `[tool.N] tool = \"FILE.tool\"`"
+        "a tool {number} was left out when {folder} was imported: mend it in the library, remove {number} from `tools.toml` and import \
+         that again, or name one, in a job by `[tool.N] tool = \"FILE.tool\"`"
     )]
     LeftOut {
         /// The number, as `T1`.
@@ -206,17 +207,22 @@ pub fn write_numbers(
     left_out: &[u32],
 ) -> Result<(), FindError> {
     // The folder is made with its first tool.
-    if tools.is_empty() {
+    if tools.is_empty() && !folder.is_dir() {
         return Ok(());
     }
     let path = within(folder, folder.join(NUMBERS))?;
     let mut numbers = read_numbers(folder)?;
     for tool in tools {
         let Some(number) = tool.entry.number else { continue };
-        let files = numbers.entry(format!("T{number}")).or_default();
-        // A second import of the library lists each file once.
-        if !files.contains(&tool.path()) {
-            files.push(tool.path());
+        match numbers.entry(format!("T{number}")) {
+            Entry::Vacant(entry) => drop(entry.insert(vec![tool.path()])),
+            Entry::Occupied(mut entry) => {
+                let files = entry.get_mut();
+                // What another library left out stays so, and a second import of one lists each file once.
+                if !files.is_empty() && !files.contains(&tool.path()) {
+                    files.push(tool.path());
+                }
+            }
         }
     }
     for number in left_out {

@@ -147,6 +147,13 @@ fn read_shape(bit: &Object, title: &str, number: Option<&Value>) -> Result<Entry
     let empty = Object::new();
     let values = |key| bit.get(key).and_then(Value::as_object).unwrap_or(&empty);
     let parameters = Parameters::new(values("parameter"), values("attribute"));
+    // The direction in which FreeCAD's posts turn the spindle for the bit.
+    let direction = |key| values(key).get("SpindleDirection").and_then(Value::as_str);
+    entry.left_handed = match direction("attribute").or(direction("parameter")) {
+        Some("Reverse") => Some(true),
+        Some("Forward") => Some(false),
+        _ => None,
+    };
     entry.cutter = Some(cutter(shape, &parameters, &mut entry.notes)?);
     Ok(entry)
 }

@@ -35,14 +35,18 @@ fn read_tool(tool: &Object, kind: &str, title: &str) -> Result<Entry, String> {
     let empty = Object::new();
     let geometry = Geometry(object(tool, "geometry")?.unwrap_or(&empty));
     // The hand of cut (ISO 13399): `false` is left.
-    entry.left_handed = geometry.0.get("HAND").and_then(Value::as_bool) == Some(false);
+    entry.left_handed = match kind {
+        "tap left hand" => Some(true),
+        "tap right hand" => Some(false),
+        _ => geometry.0.get("HAND").and_then(Value::as_bool).map(|is_right| !is_right),
+    };
     entry.cutter = Some(cutter(kind, tool, &geometry, &mut entry.notes)?);
     entry.notes.extend(contradicted_expressions(tool, &geometry, unit)?);
     if let Some(shaft) = object(tool, "shaft")? {
         entry.shaft = sections(shaft).map_err(|error| format!("its shaft: {error}"))?;
         if !shaft.get("segments").is_some_and(Value::is_array) {
-            let drawn = "the shank is drawn as a cylinder".to_owned();
-            entry.notes.push(Note::Unstated("segments of the shaft", drawn));
+            let (what, drawn) = ("shaft", "the shank is drawn as a cylinder");
+            entry.notes.push(Note::NotDrawn { what, drawn });
         }
     }
     if let (Some(last), Some(shank)) = (entry.shaft.last(), geometry.get("SFDM")?)
@@ -60,7 +64,8 @@ fn read_tool(tool: &Object, kind: &str, title: &str) -> Result<Entry, String> {
     }
     if let Some(value) = object(tool, "holder")? {
         let Some(holder) = holder(value)? else {
-            entry.notes.push(Note::NoHolder);
+            let (what, drawn) = ("holder", "the tool is drawn without its holder");
+            entry.notes.push(Note::NotDrawn { what, drawn });
             return Ok(entry);
         };
         // Without it nothing says where the holder begins.
@@ -120,10 +125,9 @@ fn contradicted_expressions(
         };
         let value = super::outline::rounded(value * of.factor_to(unit));
         if (value - stated).abs() > 1e-4 * stated.abs() {
-            notes.push(Note::Contradiction {
-                first: Stated { what, value: stated },
-                second: Stated { what: "expression of it", value },
-                taken: "former",
+            notes.push(Note::OtherExpression {
+                stated: Stated { what, value: stated },
+                expression: value,
             });
         }
     }

@@ -120,7 +120,7 @@ pub(crate) fn check_job(
                 let read = libraries.read(file, root).map_err(LoadError::from)?;
                 let entry =
                     &read.select(&named.name.to_string_lossy()).map_err(LoadError::from)?.entry;
-                named.hand = named.hand.or(entry.left_handed.then_some(Hand::Left));
+                named.hand = named.hand.or(entry.left_handed.map(Hand::of));
                 named.doubts = entry.doubts();
             }
             Ok(tool)

@@ -163,7 +163,12 @@ fn programs_select_tools_by_their_numbers() {
     let found = |name: &str| find_in_folder(folder.path(), OsStr::new(name));
     assert!(matches!(found("T1"), Err(FindError::LeftOut { .. })));
     assert!(found("T2").is_ok_and(|file| file.is_file()));
-    // A library that is mended has the tool again.
+    // Another library does not have it instead, nor does one of which no tool is written forget it.
+    write_numbers(folder.path(), &tools, &[]).expect("written");
+    assert!(matches!(found("T1"), Err(FindError::LeftOut { .. })));
+    write_numbers(folder.path(), &[], &[2]).expect("written");
+    assert!(matches!(found("T2"), Err(FindError::LeftOut { .. })));
+    std::fs::remove_file(folder.path().join("tools.toml")).expect("removed");
     write_numbers(folder.path(), &tools, &[]).expect("written");
     assert!(found("T1").is_ok_and(|file| file.is_file()));
 }
@@ -183,8 +188,8 @@ fn doubts_and_hands_of_tools_are_told() {
         );
         of("l.hsmlib", &text)
     };
-    assert_eq!(hsm("<motion clockwise=\"yes\"/>", ""), (false, Vec::new()));
-    assert_eq!(hsm("<motion clockwise=\"no\"/>", ""), (true, Vec::new()));
+    assert_eq!(hsm("<motion clockwise=\"yes\"/>", ""), (None, Vec::new()));
+    assert_eq!(hsm("<motion clockwise=\"no\"/>", ""), (Some(true), Vec::new()));
     for holder in ["<holder guid=\"h\"/>", "<holder guid=\"h\"></holder>"] {
         assert_eq!(hsm("", holder).1.len(), 1, "{holder}");
     }
@@ -195,7 +200,9 @@ fn doubts_and_hands_of_tools_are_told() {
         );
         of("l.json", &text)
     };
-    assert_eq!(fusion(", \"TA\": 45, \"DCX\": 50, \"HAND\": true"), (false, Vec::new()));
-    assert_eq!(fusion(", \"TA\": 0, \"DCX\": 40, \"HAND\": false"), (true, Vec::new()));
+    assert_eq!(fusion(", \"TA\": 45, \"DCX\": 50, \"HAND\": true"), (Some(false), Vec::new()));
+    assert_eq!(fusion(", \"TA\": 0, \"DCX\": 40, \"HAND\": false"), (Some(true), Vec::new()));
+    assert_eq!(fusion("}, \"shaft\": {\"description\": \"x\"").1.len(), 1);
+    assert_eq!(fusion("}, \"expressions\": {\"tool_diameter\": \"44 mm\"").1.len(), 1);
     assert_eq!(fusion(", \"TA\": 0, \"DCX\": 50").1.len(), 1);
 }

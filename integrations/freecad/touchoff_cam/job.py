@@ -147,7 +147,9 @@ def _bit(bit):
         if bit.getGroupOfProperty(name) in ("Shape", "Bit") and hasattr(quantity, "UserString"):
             # Values are in millimetres and degrees, whatever the user is shown.
             parameters[name] = f"{quantity.Value} {'deg' if quantity.Unit.Type == 'Angle' else 'mm'}"
-    return {"version": 2, "name": bit.Label, "shape": shape, "parameter": parameters, "attribute": {}}
+    # The hand of its edges, of FreeCAD from 1.1 on.
+    attributes = {"SpindleDirection": bit.SpindleDirection} if hasattr(bit, "SpindleDirection") else {}
+    return {"version": 2, "name": bit.Label, "shape": shape, "parameter": parameters, "attribute": attributes}
 
 
 def _json(content, path):

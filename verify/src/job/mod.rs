@@ -202,6 +202,13 @@ pub enum Hand {
     Left,
 }
 
+impl Hand {
+    /// Returns the hand of edges that cut while the spindle turns counter-clockwise, or not.
+    pub fn of(is_left: bool) -> Hand {
+        if is_left { Hand::Left } else { Hand::Right }
+    }
+}
+
 /// The stock of a job.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JobStock {
