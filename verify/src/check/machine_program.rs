@@ -569,8 +569,7 @@ impl MachineProgram {
                 }
                 Resolved::Motions(motions) | Resolved::Band(Band { motions, .. }) => motions,
                 Resolved::AnyRapid(any) => {
-                    // That of an empty spindle is among its ways.
-                    if let Some(way) = execution.resolver.rotary_way.take().filter(|_| !is_empty) {
+                    if let Some(way) = execution.resolver.rotary_way.take() {
                         MachineSummary::add_blind_way(&mut summary.rotary_ways, step.block(), way);
                     }
                     vec![(any.straight, 0.0)]

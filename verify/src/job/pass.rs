@@ -167,6 +167,12 @@ impl<'a> Job<'a> {
             let low = ways.filter_map(move |(block, way, gap, least)| {
                 Some((block, gap(self.highest_above(way, stock, least)?.to_owned())))
             });
+            // Bodies of the machine that an axis turns can meet others wherever the tool is.
+            let turned = self.revolved.iter().find(|moving| !moving.against.is_empty());
+            let turned = rotary_ways.first().zip(turned).map(|((block, _), moving)| {
+                let name = moving.name.clone();
+                (*block, JobGap::Motion(CheckGap::RotaryRapid { name }))
+            });
             // The tip of a tool of unknown length is at least as low as the tool is drawn.
             let at_top = top_ways.iter().filter_map(move |TopWay { block, tool, length, way }| {
                 let info = self.tool_of(*tool)?.tool.info();
@@ -176,7 +182,7 @@ impl<'a> Job<'a> {
                 let name = self.highest_above(&way, stock, LEVEL_ROUNDING)?.to_owned();
                 Some((*block, JobGap::LowTop { name, tool: *tool }))
             });
-            low.chain(at_top)
+            low.chain(turned).chain(at_top)
         })
     }
 

@@ -272,6 +272,23 @@ fn a_retract_of_z_before_the_first_position_is_free_under_a_head() {
     }
 }
 
+/// A table that stands at an unknown angle swings into a tool that is at its reference position and not at the top.
+#[test]
+fn a_table_that_tilts_below_a_low_home_is_not_passed_over() {
+    for (home, verdict, gap) in [(-200, NONE, Some("V0607")), (0, CLEAN, None)] {
+        let text = "G17 G21 G40 G49 G80 G90 G94 G54\nT1 M6\nS9000 M3\nG91 G28 Z0.\nG90\nG0 X0. Y0.\nG0 A-90. C0.\nG0 A0.\nX-4.5\nG43 H1 Z20.\n\
+                    G1 Z0.2 F500.\nG0 Z20.\nG91 G28 Z0.\nG90\nM30\n";
+        let scene = named("a.nc", text).placed();
+        let scene = scene.on(
+            "A-C trunnion",
+            "limits = [-500, 0]\nhome = 0",
+            &format!("limits = [-500, 0]\nhome = {home}"),
+        );
+        let scene = scene.obstacle([-9.0, 290.0, -20.0], [9.0, 299.0, -10.0]);
+        scene.gives(LINUXCNC, verdict, gap.as_slice());
+    }
+}
+
 /// Rapid traverse of a rotary axis with others at any rates is clear of what swings below the tool, and of nothing else.
 #[test]
 fn rapid_traverse_of_rotary_axes_is_judged_by_its_level() {

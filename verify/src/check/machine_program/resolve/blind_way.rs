@@ -35,7 +35,12 @@ impl Resolver<'_> {
         let chain = self.chain.as_ref()?.1.without_linear_limits();
         let turns =
             |k: usize| ends.iter().any(|end| is_unknown(k, end)) || ends[0][k] != ends[1][k];
-        if (is_at_top || is_retract || is_aside) && self.tilting(&turns).next().is_some() {
+        // What the table tilts by unknown angles is as high as it can swing.
+        let tilts = |side: Side| self.tilting(&turns).any(|axis| axis.side == side);
+        let is_of_head = tilts(Side::Tool) && !tilts(Side::Table);
+        if is_at_top && self.tilting(&turns).next().is_some()
+            || (is_retract || is_aside) && is_of_head
+        {
             return None;
         }
         let known = ends.iter().filter(|end| end[2].is_some());
