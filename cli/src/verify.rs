@@ -54,10 +54,9 @@ pub(crate) fn read(
     let mut libraries = Libraries::default();
     let inputs = JobInputs::read::<Failure>(file, |named| {
         let loaded = LoadedTool::load_from(&named.name, &arguments(named), &mut libraries)?;
-        // A folder of tools states nothing else.
-        if let Some(file) = named.library.as_deref().filter(|library| !library.is_dir()) {
-            let library = libraries.read(file, named.root.as_deref())?;
-            let entry = &library.select(&named.name.to_string_lossy())?.entry;
+        let library = named.library.as_deref();
+        let root = named.root.as_deref();
+        if let Some(entry) = libraries.entry::<Failure>(library, &named.name, root)? {
             named.hand = named.hand.or(entry.left_handed.map(Hand::of));
             named.doubts = entry.doubts();
         }

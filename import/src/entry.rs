@@ -23,7 +23,7 @@ pub struct Entry {
     pub unit: Unit,
     /// The length from the tip to the holder, in `unit`.
     pub stickout: Option<f64>,
-    /// Whether it cuts while the spindle turns counter-clockwise (M4), if the library states that.
+    /// Set if it cuts while the spindle turns counter-clockwise (M4); `None` if the library does not say.
     pub left_handed: Option<bool>,
     /// Assumptions, and contradictions of the library.
     pub notes: Vec<Note>,
@@ -82,7 +82,7 @@ pub enum Note {
     NotDrawn {
         /// The holder or the shaft.
         what: &'static str,
-        /// How the tool is drawn.
+        /// The tool as it is drawn.
         drawn: &'static str,
     },
     /// A dimension of Fusion 360 differs from its expression, from which Fusion 360 computes it anew.

@@ -218,7 +218,7 @@ pub fn write_numbers(
             Entry::Vacant(entry) => drop(entry.insert(vec![tool.path()])),
             Entry::Occupied(mut entry) => {
                 let files = entry.get_mut();
-                // What another library left out stays so, and a second import of one lists each file once.
+                // Numbers that another library left out stay so, and a second import of one lists each file once.
                 if !files.is_empty() && !files.contains(&tool.path()) {
                     files.push(tool.path());
                 }

@@ -71,7 +71,7 @@ def check(name, tool=None):
 
 
 def controllers():
-    """Write a job with two controllers of one bit, whose program is where FreeCAD posts it by default."""
+    """Write a job with two controllers of one bit, whose program is where a template of FreeCAD's own posts it."""
     with tempfile.TemporaryDirectory() as folder:
         document = FreeCAD.newDocument("controllers")
         job = PathJob.Create("Job", [bracket(document)])

@@ -115,11 +115,7 @@ pub(crate) fn check_job(
             let (library, root) = (named.library.as_deref(), named.root.as_deref());
             let tool =
                 LoadedTool::named(&named.name, library, &named.params, root, &mut libraries)?;
-            // A folder of tools states nothing else.
-            if let Some(file) = library.filter(|library| !library.is_dir()) {
-                let read = libraries.read(file, root).map_err(LoadError::from)?;
-                let entry =
-                    &read.select(&named.name.to_string_lossy()).map_err(LoadError::from)?.entry;
+            if let Some(entry) = libraries.entry::<LoadError>(library, &named.name, root)? {
                 named.hand = named.hand.or(entry.left_handed.map(Hand::of));
                 named.doubts = entry.doubts();
             }

@@ -151,7 +151,7 @@ fn programs_select_tools_by_their_numbers() {
         found(&[end_mill("T1", 0).replace("\"number\": 0", ""), tool("form mill", "wide", 1)]),
         [""; 0]
     );
-    // Of an APT library, too, and of a folder that was written from one.
+    // So are those of an APT library, and of a folder that was written from one.
     let text = "UNITS/MM\nLOADTL/1\nCUTTER/6,3,0,3,0,0,30\nLOADTL/1\nTLDATA/BARREL,6\nLOADTL/2\nCUTTER/8,4,0,4,0,0,30\nFINI\n";
     let library = Library::parse(Path::new("a.cls"), text.as_bytes()).expect("a library");
     let count = |wanted: &str| library.find(wanted).len();
@@ -173,7 +173,7 @@ fn programs_select_tools_by_their_numbers() {
     assert!(found("T1").is_ok_and(|file| file.is_file()));
 }
 
-/// What a program that was made with the library's tool can hit, and the imported tool does not, is told from other notes; so is the hand.
+/// Notes of what a program can hit that the imported tool does not are told from others; so is the hand.
 #[test]
 fn doubts_and_hands_of_tools_are_told() {
     let of = |name: &str, text: &str| {

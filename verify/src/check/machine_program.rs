@@ -14,7 +14,7 @@ use crate::gcode::{
 };
 use crate::machine::{Axis, JointError, JointMotion, Letter, Machine, Relation, Setup, Side};
 use nalgebra::Vector3;
-use resolve::{AnyRapid, Band, Resolved, Resolver};
+use resolve::{AnyRapid, Band, OtherRates, Resolved, Resolver};
 use std::collections::{BTreeMap, HashSet};
 use std::fmt;
 use std::sync::Arc;
@@ -569,7 +569,7 @@ impl MachineProgram {
                 }
                 Resolved::Motions(motions) | Resolved::Band(Band { motions, .. }) => motions,
                 Resolved::AnyRapid(any) => {
-                    if let Some(way) = execution.resolver.rotary_way.take() {
+                    if let OtherRates::Level(way) = any.other_rates {
                         MachineSummary::add_blind_way(&mut summary.rotary_ways, step.block(), way);
                     }
                     vec![(any.straight, 0.0)]
@@ -810,9 +810,9 @@ impl MoveFrame {
                 rest.map(|path| move_along(step, None, path)).into_iter().collect()
             }
             Resolved::AnyRapid(any) => {
-                let AnyRapid { straight, edges } = &**any;
+                let AnyRapid { straight, other_rates } = &**any;
                 let straight = *straight;
-                let Some(edges) = edges else {
+                let OtherRates::Box(edges) = other_rates else {
                     return self.moves(step, &Resolved::Motions(vec![(straight, 0.0)]), from);
                 };
                 let corner = self.path(straight, 0.0).pose(0.0);

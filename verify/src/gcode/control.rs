@@ -22,6 +22,7 @@ pub(super) use modal::StatedModes;
 pub(crate) use refuse::band_radii;
 pub(super) use report::Report;
 pub use spindle::Spindle;
+pub(super) use spindle::Thread;
 
 pub(super) use heidenhain::{Circle, Curve};
 
@@ -39,7 +40,7 @@ use std::sync::Arc;
 use touchoff::Unit;
 
 pub(super) use frame::{FrameStep, Retract, Swivel};
-pub(super) use hole::Hole;
+pub(super) use hole::{Hole, Tapping};
 
 /// Letters of the axes.
 const AXES: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];
@@ -486,9 +487,9 @@ impl Control {
         }
         let start = std::mem::replace(&mut self.position, end);
         let spindle = match self.modal.motion {
-            Some(Motion::Cycle(84)) => Spindle::RightTap,
-            Some(Motion::Cycle(74)) => Spindle::LeftTap,
-            Some(Motion::Tap) => Spindle::Tapping,
+            Some(Motion::Cycle(84) | Motion::Tap(Some(Thread::Right))) => Spindle::RightTap,
+            Some(Motion::Cycle(74) | Motion::Tap(Some(Thread::Left))) => Spindle::LeftTap,
+            Some(Motion::Tap(None)) => Spindle::Tapping,
             _ => self.spindle(rapid),
         };
         let state = Arc::clone(&self.state);
@@ -506,6 +507,7 @@ impl Control {
             spindle,
             absolute: !self.modal.incremental,
             is_homeward: false,
+            machine_height: None,
             is_return: false,
             shortest: [false; 6],
             state,

@@ -261,6 +261,8 @@ pub struct Step {
     pub absolute: bool,
     /// Set for the way home: of Z to a reference position or, under G53, to 0, and of other axes with it or after it.
     pub is_homeward: bool,
+    /// Z of the end in machine coordinates, if the block states it in them and the machine's file gives its place.
+    pub machine_height: Option<f64>,
     /// Set for the motion to a reference position (G28, G30).
     pub is_return: bool,
     /// Rotary axes that turn the shorter way to their end (DC of Sinumerik), whatever the [rule](Rule::Rotary).

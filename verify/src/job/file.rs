@@ -96,7 +96,7 @@ pub struct NamedTool {
     pub root: Option<PathBuf>,
     /// The hand of its cutting edges; `None` if it is not stated.
     pub hand: Option<Hand>,
-    /// What its library says for which programs may hit where the tool as it is drawn does not.
+    /// The notes of its library for which programs may hit where the tool as it is drawn does not.
     pub doubts: Vec<String>,
     /// Depths that its surfaces may have in the part, beside those of the job.
     pub allow: Vec<(String, f64)>,

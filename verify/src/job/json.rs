@@ -481,7 +481,7 @@ fn log(report: &JobReport<'_>, job: &str) -> Log {
         version: "2.1.0",
         runs: [Run {
             tool: Tool { driver },
-            // What stands before the last `/` is the category (section 3.17.3 of SARIF 2.1.0).
+            // The part before the last `/` is the category (section 3.17.3 of SARIF 2.1.0).
             automation_details: AutomationDetails { id: format!("touchoff/{}/", Escaped(job)) },
             invocations: [Invocation {
                 execution_successful: report.verdict() != Verdict::None,

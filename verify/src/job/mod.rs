@@ -13,6 +13,7 @@ mod file;
 mod finding;
 mod inputs;
 mod json;
+mod level;
 mod machine;
 mod pass;
 mod program;
@@ -864,7 +865,7 @@ faults! {
             tool.map_or("the tool".to_owned(), |tool| format!("T{tool}"))
         )]
         LowTop { name: String, tool: Option<u32> },
-        /// What the library of a tool says: programs of its system have another origin, or it has a holder that is not drawn.
+        /// A note in the library of a tool: programs of its system have another origin, or it has a holder that is not drawn.
         #[code = V0613]
         #[error("{tool}: {doubt}")]
         LibraryTool { tool: String, doubt: String },

@@ -6,23 +6,14 @@ use super::machine::MachineFinding;
 use super::program::BlockMoves;
 use super::report::{JobReport, Moving, PairReport, Remedy};
 use super::stock::{CutStock, StockCut};
-use super::{Body, BodyFrame, BodyRole, Job, JobError, JobGap, JobStock, JobTool, STOCK};
-use crate::check::{ApproachSearch, CheckGap, MoveCheck, MoveRequest};
+use super::{Body, BodyFrame, Job, JobError, JobGap, JobTool};
+use crate::check::{ApproachSearch, MoveCheck, MoveRequest};
 use crate::gcode::{BlockLine, WorkOffset};
-use crate::machine::{Axis, Link, Machine, Side};
-use crate::{
-    BlindWay, FindingGroup, Level, MachineProgram, MachineSummary, Move, TopWay, Verifier,
-};
-use nalgebra::{Point3, Vector3};
+use crate::machine::{Link, Machine, Side};
+use crate::{FindingGroup, MachineProgram, MachineSummary, Move, Verifier};
 use std::collections::HashSet;
 use std::sync::Arc;
 use touchoff::tool::Symmetry;
-
-/// Rounding of heights, in the part's unit.
-const LEVEL_ROUNDING: f64 = 1e-6;
-
-/// A gap of a way by the name of what is higher.
-type NamedGap = fn(String) -> JobGap;
 
 /// Largest number of pairs of something that moves and a body. Each has a verifier and its findings in memory.
 const MAX_PAIRS: usize = 10_000;
@@ -140,146 +131,6 @@ impl<'a> Job<'a> {
         let mut report = JobReport { job: self, pairs, machine, cuts, gaps, findings: Vec::new() };
         report.findings = finding::all(&report);
         Ok(report)
-    }
-
-    /// Returns the ways of each reading that are lower than a body or the stock: those to the first position and to a reference position
-    /// that is not known, of which X and Y are not known at one of their ends, and so what is between, those of rotary axes at rates that
-    /// are not known, and those of an empty spindle.
-    fn low_ways(&self) -> impl Iterator<Item = (BlockLine, JobGap)> + '_ {
-        let stock = self.stock.as_ref().map(JobStock::bounds);
-        self.program.readings().iter().flat_map(move |reading| {
-            let MachineSummary { blind_ways, ways_home, rotary_ways, empty_ways, top_ways, .. } =
-                reading.summary();
-            // A tool may touch what it passes over, and the nose of a spindle may not.
-            let kinds: [(_, NamedGap, _); 4] = [
-                (blind_ways, |name| JobGap::LowWay { name }, LEVEL_ROUNDING),
-                (ways_home, |name| JobGap::LowWayHome { name }, LEVEL_ROUNDING),
-                (
-                    rotary_ways,
-                    |name| JobGap::Motion(CheckGap::RotaryRapid { name }),
-                    LEVEL_ROUNDING,
-                ),
-                (empty_ways, |name| JobGap::LowSpindle { name }, -LEVEL_ROUNDING),
-            ];
-            let ways = kinds.into_iter().flat_map(|(ways, gap, least)| {
-                ways.iter().map(move |(block, way)| (*block, way, gap, least))
-            });
-            let low = ways.filter_map(move |(block, way, gap, least)| {
-                Some((block, gap(self.highest_above(way, stock, least)?.to_owned())))
-            });
-            // Bodies of the machine that an axis turns can meet others wherever the tool is.
-            let turned = self.revolved.iter().find(|moving| !moving.against.is_empty());
-            let turned = rotary_ways.first().zip(turned).map(|((block, _), moving)| {
-                let name = moving.name.clone();
-                (*block, JobGap::Motion(CheckGap::RotaryRapid { name }))
-            });
-            // The tip of a tool of unknown length is at least as low as the tool is drawn.
-            let at_top = top_ways.iter().filter_map(move |TopWay { block, tool, length, way }| {
-                let info = self.tool_of(*tool)?.tool.info();
-                let mut way = way.clone();
-                let below = length.unwrap_or(info.reach().high * info.unit.millimetres());
-                way.levels.iter_mut().for_each(|level| level.height -= below);
-                let name = self.highest_above(&way, stock, LEVEL_ROUNDING)?.to_owned();
-                Some((*block, JobGap::LowTop { name, tool: *tool }))
-            });
-            low.chain(turned).chain(at_top)
-        })
-    }
-
-    /// Returns the name of a body, or of the stock by its box, that is higher than a way by more than a length.
-    fn highest_above(
-        &self,
-        way: &BlindWay,
-        stock: Option<[Point3<f64>; 2]>,
-        least: f64,
-    ) -> Option<&str> {
-        let carried = |index| self.revolved.iter().any(|moving| moving.against.contains(&index));
-        let bodies = self.bodies.iter().enumerate();
-        let bodies = bodies.filter(|(index, body)| body.meets_tools() || carried(*index));
-        // An allowance below 0 is a distance to keep.
-        let allowances = self.tools.iter().flat_map(|tool| &tool.allow).chain(&self.allow);
-        let part_margin = allowances.map(|(_, depth)| -depth).fold(0.0, f64::max);
-        let bodies = bodies.filter_map(|(_, body)| {
-            let margin = match body.role {
-                BodyRole::Part => part_margin,
-                BodyRole::Fixture { margin } | BodyRole::Machine { margin, .. } => margin,
-            };
-            Some((&*body.name, self.height_above(body, way)? + margin))
-        });
-        let stock = stock.map(|bounds| (STOCK, self.stock_above(bounds, way)));
-        let highest = bodies.chain(stock).max_by(|one, other| one.1.total_cmp(&other.1));
-        highest.filter(|(_, height)| *height > least).map(|(name, _)| name)
-    }
-
-    /// Returns the height of a body above a way; `None` for one that is not in it. What stands still on the machine is out of the way at the
-    /// top of Z's travel, and what moves with the tool anywhere.
-    fn height_above(&self, body: &Body<'_>, way: &BlindWay) -> Option<f64> {
-        let unit = self.unit().millimetres();
-        let above = |level: &Level, bounds| top(level, bounds) - level.height / unit;
-        let (part, links) = way.levels.split_last()?;
-        let bounds = body.bvh.bounds();
-        let Some(machine) = self.program.machine() else { return Some(above(part, bounds)) };
-        let link = body.frame.link(machine);
-        let is_at_part = link == machine.last_link(Side::Table);
-        let is_at_tool = !is_at_part && link == machine.last_link(Side::Tool);
-        let table = || machine.axes().iter().filter(|axis| axis.side == Side::Table);
-        let is_of_table = is_at_part
-            || table().any(|axis| link == Link::Axis(axis.letter))
-            || matches!(body.role, BodyRole::Fixture { .. });
-        if is_at_tool || way.is_at_top && !is_of_table {
-            return None;
-        }
-        let index = match link {
-            Link::Base => 0,
-            // X and Y of a head can be anywhere beside what another link of it carries.
-            Link::Axis(letter) => match table().position(|axis| axis.letter == letter) {
-                Some(index) => index + 1,
-                None => return Some(f64::INFINITY),
-            },
-        };
-        // In machine coordinates with all axes at 0, unless G54 has angles.
-        let origin = self.program.readings().first()?.part_origin();
-        let [x, y, z, rotary @ ..] = origin.unwrap_or_default();
-        let moved = |by: Vector3<f64>| bounds.map(|corner| corner + by / unit);
-        let is_of_machine = matches!(body.frame, BodyFrame::Machine(_));
-        let on_machine =
-            moved(if is_of_machine { Vector3::zeros() } else { Vector3::new(x, y, z) });
-        let level = links.get(index).unwrap_or(part);
-        if level.height > f64::NEG_INFINITY {
-            return Some(match (index < links.len(), is_of_machine) {
-                (true, _) => above(level, on_machine),
-                (false, false) => above(part, bounds),
-                // The frame of the part is turned with the axes of G54: about Z it keeps the height.
-                (false, true) if part.up == Vector3::z() || rotary == [0.0; 3] => {
-                    above(part, moved(-Vector3::new(x, y, z)))
-                }
-                (false, true) => f64::INFINITY,
-            });
-        }
-        Some(match origin {
-            Some(_) if rotary == [0.0; 3] => {
-                swung_above(&table().take(index).collect::<Vec<_>>(), on_machine, way, unit)
-            }
-            _ => f64::INFINITY,
-        })
-    }
-
-    /// Returns the height of the stock's box above a way, as [`Job::height_above`] that of the part.
-    fn stock_above(&self, bounds: [Point3<f64>; 2], way: &BlindWay) -> f64 {
-        let unit = self.unit().millimetres();
-        let Some(part) = way.levels.last() else { return f64::INFINITY };
-        if part.height > f64::NEG_INFINITY {
-            return top(part, bounds) - part.height / unit;
-        }
-        let origin = self.program.readings().first().and_then(MachineProgram::part_origin);
-        match (self.program.machine(), origin) {
-            (Some(machine), Some([x, y, z, 0.0, 0.0, 0.0])) => {
-                let carriers = machine.axes().iter().filter(|axis| axis.side == Side::Table);
-                let on_machine = bounds.map(|corner| corner + Vector3::new(x, y, z) / unit);
-                swung_above(&carriers.collect::<Vec<_>>(), on_machine, way, unit)
-            }
-            _ => f64::INFINITY,
-        }
     }
 
     /// Returns the number of checks of motions at bodies, those of all readings together.
@@ -475,32 +326,4 @@ impl<'a> Job<'a> {
     fn tool_index(&self, number: Option<u32>) -> Option<usize> {
         self.tools.iter().position(|tool| tool.motions.contains(number))
     }
-}
-
-/// Returns the height of a box along a level's direction.
-fn top(level: &Level, [low, high]: [Point3<f64>; 2]) -> f64 {
-    (0..3).map(|k| (level.up[k] * low[k]).max(level.up[k] * high[k])).sum()
-}
-
-/// Returns how far a box on the machine, tilted by unknown angles of its carriers, reaches above a way.
-fn swung_above(carriers: &[&Axis], bounds: [Point3<f64>; 2], way: &BlindWay, unit: f64) -> f64 {
-    let base = way.levels.first();
-    base.map_or(f64::INFINITY, |base| swing(carriers, bounds, unit) - base.height / unit)
-}
-
-/// Returns the greatest Z of the machine that a box reaches at any angles of the rotary axes that carry it: that of the innermost axis and
-/// the distance of the box's farthest point from it, by way of the other axes. `carriers` are in order from the base, `unit` is in mm.
-fn swing(carriers: &[&Axis], [low, high]: [Point3<f64>; 2], unit: f64) -> f64 {
-    let (rotary, linear): (Vec<&Axis>, Vec<&Axis>) =
-        carriers.iter().partition(|axis| axis.letter.is_rotary());
-    let points: Vec<Point3<f64>> = rotary.iter().map(|axis| axis.point / unit).collect();
-    let (Some(innermost), Some(outermost)) = (points.first(), points.last()) else {
-        return f64::INFINITY;
-    };
-    if linear.iter().any(|axis| axis.direction.z != 0.0) {
-        return f64::INFINITY;
-    }
-    let between: f64 = points.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
-    let farthest = (outermost - low).abs().sup(&(high - outermost).abs()).norm();
-    innermost.z + between + farthest
 }

@@ -77,7 +77,19 @@ fn cycles_move_along_the_hole() {
     let low = "CYCL DEF 207 TAP ~\n Q200=+5 ~\n Q201=-34 ~\n Q239=+1.25 ~\n Q203=+0 ~\n Q204=+1";
     assert_eq!(call(low), [(rapid, 5.0), (feed, -34.0), (feed, 5.0)]);
     let tapped = steps(&format!("{at}{low}\nCYCL CALL"));
-    assert!(tapped[tapped.len() - 2..].iter().all(|step| step.spindle == Spindle::Tapping));
+    assert!(tapped[tapped.len() - 2..].iter().all(|step| step.spindle == Spindle::RightTap));
+    // The hand of a thread is the sign of its pitch, or that of the spindle.
+    let floating =
+        "CYCL DEF 206 TAP ~\n Q200=+5 ~\n Q201=-34 ~\n Q206=500 ~\n Q211=0 ~\n Q203=+0 ~\n Q204=+1";
+    for (spindle, cycle, hand) in [
+        ("M3", low.replace("Q239=+", "Q239=-"), Spindle::LeftTap),
+        ("M4", floating.to_owned(), Spindle::LeftTap),
+        ("M3", format!("{floating}\nCYCL CALL"), Spindle::RightTap),
+        ("M5", floating.to_owned(), Spindle::Tapping),
+    ] {
+        let tapped = steps(&format!("{at}{spindle}\n{cycle}\nCYCL CALL"));
+        assert_eq!(tapped[tapped.len() - 1].spindle, hand, "{spindle} {cycle}");
+    }
     // Boring leaves the wall by 0.2 mm along -X, and returns to the axis above the part.
     let bored = steps(&format!("{at}CYCL DEF 202 BORE ~\n {common} ~\n Q214=+1\nCYCL CALL"));
     let last: Vec<_> =

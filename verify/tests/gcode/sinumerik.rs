@@ -302,8 +302,18 @@ fn drilling_cycles_move_to_their_levels() {
     // Tapping needs no feed of the program where it has a pitch, and turns the spindle itself.
     let tapped =
         steps("G0 X5 Y6 Z50\nCYCLE84(20,0,3,-10,,0,3,,1.5,0,500,500)\nS500\nG1 Z19 F100\nM30\n");
-    assert_eq!(tapped[2].spindle, Spindle::Tapping);
+    assert_eq!(tapped[2].spindle, Spindle::RightTap);
     assert_eq!(tapped[5].spindle, Spindle::Clockwise);
+    // The sign of a pitch is the hand of the thread, but that of CYCLE840 is the turn of the spindle.
+    for (cycle, hand) in [
+        ("CYCLE84(20,0,3,-10,,0,3,,-1.5,0,500,500)", Spindle::LeftTap),
+        ("CYCLE84(20,0,3,-10,,0,3,-8,,0,500,500)", Spindle::LeftTap),
+        ("CYCLE840(20,0,3,-10,,0,0,5,1,,1.5)", Spindle::LeftTap),
+        ("M5\nCYCLE840(20,0,3,-10,,0,0,5,1,,1.5)", Spindle::Tapping),
+    ] {
+        let tapped = steps(&format!("S500 M4\nG0 X5 Y6 Z50\n{cycle}\nM30\n"));
+        assert_eq!(tapped[2].spindle, hand, "{cycle}");
+    }
     // Each motion calls a modal cycle, at its end.
     let modal = "G0 X1 Y1 Z50 F100\nMCALL CYCLE81(20,0,3,-10)\nX2\nM8\nY2\nMCALL\nX3\nM30\n";
     let expected = [

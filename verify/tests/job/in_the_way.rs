@@ -4,7 +4,7 @@ use crate::scene::{
     CLEAN, FANUC, FINDINGS, HAAS, HEIDENHAIN, LINUXCNC, NONE, SIEMENS, Scene, native,
 };
 use touchoff_verify::gcode::Choice;
-use touchoff_verify::machine::Machine;
+use touchoff_verify::machine::{Letter, Link, Machine};
 
 /// A B axis that tilts the spindle 160 mm above its gauge point, over a table C.
 pub(crate) const B_HEAD: &str = r#"
@@ -255,6 +255,98 @@ fn the_way_to_a_reference_position_leads_down_to_it() {
     }
 }
 
+/// As the drawing of a tool is long, its way leads down to a reference position below the top, also if its length is not stated.
+#[test]
+fn a_tool_of_unknown_length_goes_down_to_a_low_reference_position() {
+    for (height, verdict, gap) in [(-250, NONE, Some("V0612 the clamp")), (-60, CLEAN, None)] {
+        let machine = format!(
+            "name = \"mill\"\nm92 = [0, 0, {height}]\naxis = [\n{{ letter = \"X\", kind = \"linear\", carries = \"table\", home = 0 }},\n\
+             {{ letter = \"Y\", kind = \"linear\", carries = \"table\", home = 0 }},\n\
+             {{ letter = \"Z\", kind = \"linear\", carries = \"tool\", limits = [-500, 0], home = {height} }},\n]"
+        );
+        let iso = |way: &str| {
+            format!(
+                "G21 G90 G17 G94 G54\nT1 M6\nS1000 M3\nG43 H1\nG0 X-6 Y0 Z200\nZ20\nG1 Z0.2 F500\nX6\nG0 Z200\nY90\n{way}\nM30\n"
+            )
+        };
+        let klartext = "BEGIN PGM A MM\nTOOL CALL 1 Z S900\nL Z+0 R0 FMAX M91\nL X-6 Y+0 R0 FMAX M3\nL Z+20 FMAX\nL Z+0.2 F500\nL X+6\nL Z+200 FMAX\nL Y+90 FMAX\nL Z+0 R0 FMAX M92\n\
+                        L X+0 Y+90 R0 FMAX M91\nM30\nEND PGM A MM\n";
+        for (control, file, text) in [
+            (LINUXCNC, "a.nc", iso("G91 G28 Z0\nG90")),
+            (LINUXCNC, "a.nc", iso(&format!("G53 G0 Z{height}"))),
+            (LINUXCNC, "a.nc", iso("G91 G28 X0 Y0 Z0\nG90")),
+            (HEIDENHAIN, "a.h", klartext.to_owned()),
+        ] {
+            let mut scene = scene(file, &text, &machine, "[0, 0, -450]");
+            scene.job = scene.job.replace("length = 80\n", "");
+            let scene = scene.obstacle([-9.0, 81.0, 0.0], [9.0, 99.0, 199.0]);
+            let gap =
+                gap.map(
+                    |gap| {
+                        if control == HEIDENHAIN { gap.replace('7', "6") } else { gap.to_owned() }
+                    },
+                );
+            scene.gives(control, verdict, gap.as_deref().as_slice());
+        }
+    }
+}
+
+/// Z alone rises to the top of its travel, the others follow there, and Z comes down: the length of the tool does not matter.
+#[test]
+fn a_tool_of_unknown_length_arrives_from_the_top() {
+    let klartext = |retract: &str| {
+        format!(
+            "BEGIN PGM A MM\nTOOL CALL 1 Z S900\n{retract}\nL X-6 Y+0 R0 FMAX M3\nL Z+20 FMAX\nL Z+0.2 F500\nL X+6\nL Z+20 FMAX\n\
+             L Z+0 R0 FMAX M91\nL X+0 R0 FMAX M91\nM30\nEND PGM A MM\n"
+        )
+    };
+    let fanuc = "G21 G90 G17 G94 G54\nT1 M6\nS1000 M3\nG43 H1\nG91 G28 Z0.\nG90\nG43 H1\nG0 X-6. Y0.\nG0 Z20.\nG1 Z0.2 F500.\nX6.\nG0 Z20.\n\
+                 M30\n";
+    for (control, file, text) in [
+        (HEIDENHAIN, "a.h", klartext("L Z+0 R0 FMAX M91")),
+        (HEIDENHAIN, "a.h", klartext("L M140 MB MAX FMAX")),
+        (FANUC, "a.nc", fanuc.to_owned()),
+    ] {
+        let scene = || {
+            let mut scene = named(file, &text).placed();
+            scene.job = scene.job.replace("length = 50\n", "");
+            scene
+        };
+        scene().gives(control, CLEAN, &[]);
+        let below = scene().obstacle([-9.0, -2.0, 0.0], [-5.0, 2.0, 30.0]);
+        below.gives(control, FINDINGS, &["V0101 the clamp"]);
+        let high = scene().obstacle([40.0, 40.0, 0.0], [44.0, 44.0, 390.0]);
+        high.gives(control, NONE, &["V0612 the clamp"]);
+    }
+}
+
+/// A head must not touch a disc that the table carries: the tool has to stay above that, too.
+#[test]
+fn a_disc_below_the_head_is_in_the_way() {
+    let text = "G21 G90 G17 G94 G54\nT1 M6\nS1000 M3\nG0 G43 H1 Z60.\nG0 X-6. Y0.\nG1 Z0.2 F500.\nX6.\nG0 Z60.\nG53 G0 Z0.\nM30\n";
+    for (z, verdict, gap) in [(-300.0, NONE, Some("V0607 the disc")), (-400.0, CLEAN, None)] {
+        let scene = named("a.nc", text).placed();
+        let scene = scene.body([-60.0, -60.0, 0.0], [60.0, 60.0, 200.0], Link::Axis(Letter::Z));
+        scene.disc([300.0, 0.0, z], Link::Axis(Letter::X)).gives(HAAS, verdict, gap.as_slice());
+    }
+    // The disc turns up into the head, or stays below the tool.
+    let text = |z: &str| {
+        format!(
+            "G17 G21 G40 G49 G80 G90 G94 G54\nG91 G28 Z0.\nG90\nT1 M6\nS9000 M3\nG0 X0. Y0. A0. C0.\nG43 H1 Z{z}\nX-20. A-90.\n\
+             A0.\nX-6.\nZ20.\nG1 Z0.2 F500.\nX6.\nG0 Z20.\nG91 G28 Z0.\nG90\nM30\n"
+        )
+    };
+    for (z, verdict, gap) in [("65.", NONE, Some("V0302 8 the disc")), ("200.", CLEAN, None)] {
+        let scene = named("a.nc", &text(z)).placed().with("machine = \"A-C trunnion\"");
+        let scene = scene.body([-30.0, -30.0, 0.0], [30.0, 30.0, 200.0], Link::Axis(Letter::Z));
+        scene.disc([0.0, 0.0, -500.0], Link::Axis(Letter::A)).gives(HAAS, verdict, gap.as_slice());
+    }
+    // Of two that the table carries, the level of the tool says nothing.
+    let scene = named("a.nc", &text("200.")).placed().with("machine = \"A-C trunnion\"");
+    let scene = scene.body([-30.0, 250.0, -600.0], [30.0, 260.0, -590.0], Link::Base);
+    scene.disc([0.0, 0.0, -500.0], Link::Axis(Letter::A)).gives(HAAS, NONE, &["V0302 8 the disc"]);
+}
+
 /// A head that may be tilted rises to the reference position of Z from wherever it stands, as posts begin.
 #[test]
 fn a_retract_of_z_before_the_first_position_is_free_under_a_head() {
@@ -303,6 +395,15 @@ fn rapid_traverse_of_rotary_axes_is_judged_by_its_level() {
         scene.gives(HAAS, verdict, gap.as_slice());
     }
     let scene = || named("a.nc", &text("150.")).placed().with("machine = \"4-axis\"");
+    // So it does with an angle of the work offset.
+    let turned = |angle: &str| {
+        let mut scene = scene();
+        scene.job = scene.job.replace("[0, 0, -400]", &format!("[0, 0, -400, {angle}, 0, 0]"));
+        scene
+    };
+    turned("30").gives(HAAS, CLEAN, &[]);
+    let high = turned("30").obstacle([30.0, 290.0, -20.0], [40.0, 299.0, -10.0]);
+    high.gives(HAAS, NONE, &["V0302 9 the clamp"]);
     // A bar on the table reaches higher while it turns.
     scene().obstacle([30.0, 90.0, -20.0], [40.0, 99.0, -10.0]).gives(HAAS, CLEAN, &[]);
     let high = scene().obstacle([30.0, 290.0, -20.0], [40.0, 299.0, -10.0]);

@@ -1,5 +1,6 @@
 //! What a job states, what a verdict says, and what a program leaves to its next run.
 
+use crate::in_the_way::named;
 use crate::scene::{
     ANY, CLEAN, FANUC, FINDINGS, HAAS, HEIDENHAIN, LINUXCNC, NONE, SIEMENS, Scene, rules,
 };
@@ -48,6 +49,21 @@ fn a_feed_needs_a_spindle_that_turns_the_right_way() {
     left.gives(LINUXCNC, FINDINGS, &["V0106 the wrong way round"]);
     left.job = left.job.replace("LENGTH", "hand = \"left\"\nLENGTH");
     left.gives(LINUXCNC, CLEAN, &[]);
+    // A tap cuts a thread of its own hand.
+    for (hand, pitch, verdict) in [
+        ("left", "+", FINDINGS),
+        ("left", "-", CLEAN),
+        ("right", "-", FINDINGS),
+        ("right", "+", CLEAN),
+    ] {
+        let text = format!(
+            "BEGIN PGM A MM\nTOOL CALL 1 Z S900\nL Z+20 R0 FMAX M3\nL X-60 Y+0 R0 FMAX\n\
+             CYCL DEF 207 TAP Q200=+5 Q201=-20 Q239={pitch}1 Q203=+0 Q204=+20\nCYCL CALL\nM30\nEND PGM A MM\n"
+        );
+        let mut tap = named("a.h", &text).placed().with("anyway = true");
+        tap.job = tap.job.replace("length = 50", &format!("length = 50\nhand = \"{hand}\""));
+        tap.gives(HEIDENHAIN, verdict, if verdict == CLEAN { &[] } else { &["V0106 6"] });
+    }
     // A stop stops the spindle of a Haas, and not that of LinuxCNC.
     let stop = Scene::of(&format!("G21 G90 G54\nS900 M3\nM0\n{feed}"));
     stop.gives(LINUXCNC, CLEAN, &[]);

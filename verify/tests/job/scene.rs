@@ -1,6 +1,6 @@
 //! A block, a tool, a program and a job, all in memory, and what their check gives.
 
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::path::Path;
@@ -8,9 +8,9 @@ use std::sync::Arc;
 use touchoff::certify::TriangleBvh;
 use touchoff::mesh::shapes;
 use touchoff::tool::Interpreted;
-use touchoff::{Tool, Unit};
+use touchoff::{Pose, Tool, Unit};
 use touchoff_verify::gcode::{Choice, ControlRules, Rule, SubprogramFile, SubprogramLine};
-use touchoff_verify::job::{Body, NoVerdict};
+use touchoff_verify::job::{Body, NoVerdict, RevolvedBody};
 use touchoff_verify::machine::{Link, Machine};
 use touchoff_verify::{
     Job, JobError, JobFile, JobReport, JobTool, MachineProgramError, Program, Verdict,
@@ -73,7 +73,12 @@ pub(crate) struct Scene {
     obstacle: Option<TriangleBvh>,
     /// The link of the machine with which the obstacle moves; otherwise it is a fixture.
     link: Option<Link>,
+    /// The place in machine coordinates of a disc that moves with a link, and must not touch the obstacle.
+    disc: Option<([f64; 3], Link)>,
 }
+
+/// A disc with a radius of 150 mm.
+const DISC: &str = "tool Disc { units mm; profile { start (0, 0); line to (150, 0), (150, 10), (0, 10) as rim; } }";
 
 /// A finding, a gap, a reason against a verdict, or an error.
 #[derive(Debug)]
@@ -168,6 +173,7 @@ impl Scene {
             files: BTreeMap::new(),
             obstacle: None,
             link: None,
+            disc: None,
         }
     }
 
@@ -218,6 +224,12 @@ impl Scene {
     pub(crate) fn body(mut self, low: [f64; 3], high: [f64; 3], link: Link) -> Scene {
         self.link = Some(link);
         self.obstacle(low, high)
+    }
+
+    /// Adds a disc of the machine, in machine coordinates, that must not touch the obstacle.
+    pub(crate) fn disc(mut self, place: [f64; 3], link: Link) -> Scene {
+        self.disc = Some((place, link));
+        self
     }
 
     /// Asserts the verdict, and what is found, left open or refused.
@@ -288,6 +300,7 @@ impl Scene {
                 Interpreted::from_text(name, text).expect("a tool")
             })
             .collect();
+        let disc = Interpreted::from_text("disc.tool", DISC).expect("a tool");
         let part = cuboid([-3.0, -3.0, -2.0], [3.0, 3.0, 0.0]);
         let mut job = Job::new(&program, &part);
         for (named, tool) in named.iter().zip(&tools) {
@@ -302,6 +315,12 @@ impl Scene {
                 None => Body::fixture("the clamp", obstacle),
                 Some(link) => Body::machine("the clamp", obstacle, link),
             });
+        }
+        if let Some((place, link)) = self.disc {
+            let mount = Pose::from_axis(Point3::from(place), Vector3::z()).expect("a pose");
+            let mut body = RevolvedBody::new("the disc", &disc, link, mount);
+            body.against.push(job.bodies.len() - 1);
+            job.revolved.push(body);
         }
         if let Some(stock) = &file.stock {
             job.stock = Some(stock.stock(None, &program, file.unit)?);

@@ -205,8 +205,8 @@ faults! {
         /// A motion to machine coordinates that are not known.
         #[code = V0404]
         #[error(
-            "only the machine knows where its coordinates and its reference position are: state the origin of G54 in `work_offsets`, and \
-             `home` of its axes; for M92 `m92` of the machine's file"
+            "only the machine knows where its coordinates and its reference position are: state the origin of G54 in `work_offsets`, \
+             `home` of its axes, and the `length` of the tool; for M92 `m92` of the machine's file"
         )]
         Return,
         /// The way of axes from known positions to machine coordinates that are not known.

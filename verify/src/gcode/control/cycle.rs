@@ -11,7 +11,7 @@
 //! drill. G83 returns to its last depth in rapid traverse; the clearance that a control keeps there is taken
 //! as zero.
 
-use super::{AXES, Control, Cycle, FeedMode, Spindle, linuxcnc};
+use super::{AXES, Control, Cycle, FeedMode, Spindle, Thread, linuxcnc};
 use crate::gcode::block::{Block, Group};
 use crate::gcode::error::{combination, missing};
 use crate::gcode::note::NoteKind;
@@ -151,7 +151,9 @@ impl Control {
             let remedy = "write G43 or G49 in a block before";
             return Err(combination(word, condition, remedy));
         }
-        if matches!(number, 74 | 84) && !self.can_tap(number) {
+        if let Some(thread) = thread_of(number)
+            && !self.can_tap(thread)
+        {
             let condition =
                 "the spindle does not turn into the thread, which some controls start themselves";
             let remedy = "write M3 before G84, M4 before G74, or M29 for rigid tapping";
@@ -366,8 +368,17 @@ impl Control {
             }
             _ => self.move_along(axis, true, clear),
         }
-        if matches!(number, 74 | 84) {
-            self.end_tapping(number);
+        if let Some(thread) = thread_of(number) {
+            self.end_tapping(Some(thread));
         }
+    }
+}
+
+/// Returns the thread that a cycle taps.
+fn thread_of(number: u32) -> Option<Thread> {
+    match number {
+        74 => Some(Thread::Left),
+        84 => Some(Thread::Right),
+        _ => None,
     }
 }

@@ -1,7 +1,7 @@
 //! Motions and changes of coordinates that Heidenhain Klartext has, and ISO 6983 has no words for.
 
 use super::motion::{ArcWords, path};
-use super::{AXES, Control, Motion};
+use super::{AXES, Control, Motion, Thread};
 use crate::gcode::block::Block;
 use crate::gcode::error::{CompensationFault, combination, missing};
 use crate::gcode::state::{LengthOffset, Position, Rotation, Tcp, WorkOffset};
@@ -184,24 +184,23 @@ impl Control {
         (step.rapid, step.spindle, step.is_homeward) = (rapid, spindle, is_homeward);
     }
 
-    /// Moves along Z to a level in program coordinates, in millimetres. A tap turns with the motion.
-    pub(in crate::gcode) fn move_to_level(&mut self, level: f64, rapid: bool, is_tap: bool) {
+    /// Moves along Z to a level in program coordinates, in millimetres.
+    pub(in crate::gcode) fn move_to_level(&mut self, level: f64, rapid: bool) {
         if self.position[2] == Some(level) {
             return;
         }
         let mut end = self.position;
         end[2] = Some(level);
-        let before = self.modal.motion;
-        if is_tap {
-            self.modal.motion = Some(Motion::Tap);
-        }
         self.push(rapid, end, Z_ALONE, StepPath::Line);
-        self.modal.motion = before;
     }
 
-    /// Notes the end of a tapping cycle, which leaves the spindle standing or turning.
-    pub(in crate::gcode) fn leave_thread(&mut self) {
-        self.end_tapping(84);
+    /// Taps a thread from one level to another and back, in millimetres.
+    pub(in crate::gcode) fn tap(&mut self, [top, bottom]: [f64; 2], thread: Option<Thread>) {
+        let before = self.modal.motion.replace(Motion::Tap(thread));
+        self.move_to_level(bottom, false);
+        self.move_to_level(top, false);
+        self.modal.motion = before;
+        self.end_tapping(thread);
     }
 
     /// Returns whether the setup states work offsets of presets.

@@ -1,6 +1,6 @@
 //! Holes of Sinumerik's drilling cycles, in absolute levels along Z.
 
-use super::{Control, Motion, Spindle};
+use super::{Control, Motion, Spindle, Thread};
 use crate::gcode::block::{Block, Distance, Number};
 use crate::gcode::error::combination;
 use crate::gcode::state::Tcp;
@@ -19,8 +19,16 @@ pub(in crate::gcode) struct Hole {
     pub(in crate::gcode) returns_at_feed: bool,
     /// Set where the cycle has a feed of its own.
     pub(in crate::gcode) has_feed: bool,
-    /// Set for tapping: the M word that turns the spindle after it, 3, 4 or 5, or another number.
-    pub(in crate::gcode) tapping: Option<u32>,
+    pub(in crate::gcode) tapping: Option<Tapping>,
+}
+
+/// What a tapping cycle does with the spindle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::gcode) struct Tapping {
+    /// The thread, if it is not that to which the spindle turns before.
+    pub(in crate::gcode) thread: Option<Thread>,
+    /// The M word that turns the spindle after it, 3, 4 or 5, or another number.
+    pub(in crate::gcode) after: u32,
 }
 
 impl Control {
@@ -62,8 +70,9 @@ impl Control {
             self.move_along(axis, true, safe);
         }
         let motion = self.modal.motion;
-        if hole.tapping.is_some() {
-            self.modal.motion = Some(Motion::Tap);
+        if let Some(Tapping { thread, .. }) = hole.tapping {
+            let thread = thread.or_else(|| self.thread_of_spindle());
+            self.modal.motion = Some(Motion::Tap(thread));
         }
         self.move_along(axis, false, depth);
         if hole.returns_at_feed {
@@ -73,7 +82,7 @@ impl Control {
         if self.position[axis] != retract {
             self.move_along(axis, true, retract);
         }
-        if let Some(after) = hole.tapping {
+        if let Some(Tapping { after, .. }) = hole.tapping {
             self.spindle.turn = match after {
                 3 => Spindle::Clockwise,
                 4 => Spindle::CounterClockwise,

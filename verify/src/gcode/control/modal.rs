@@ -1,6 +1,6 @@
 //! The modes in force: motion, plane, unit, distance and feed.
 
-use super::{AXES, Control};
+use super::{AXES, Control, Thread};
 use crate::gcode::block::{Block, Code, Group};
 use crate::gcode::error::{combination, not_read};
 use crate::gcode::note::NoteKind;
@@ -57,7 +57,7 @@ pub(super) enum Motion {
     /// A canned cycle, by its number.
     Cycle(u32),
     /// The stroke of a tap, which a cycle with a name makes and no word selects.
-    Tap,
+    Tap(Option<Thread>),
 }
 
 /// Meaning of F.

@@ -469,8 +469,10 @@ impl Control {
         // These state which axes of the machine move: the others stay, also in a rotated plane.
         let is_of_machine = matches!(path, StepPath::ToolChange(_) | StepPath::Machine(_));
         self.push(true, end, if is_of_machine { moved } else { commanded }, path);
+        let step = self.pending.back_mut().expect("the step that was added");
         // Machine coordinates are stated in G91, too.
-        self.pending.back_mut().expect("the step that was added").absolute = true;
+        step.absolute = true;
+        step.machine_height = target[2].filter(|_| moved[2]);
     }
 }
 

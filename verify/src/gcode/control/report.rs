@@ -61,7 +61,7 @@ impl Control {
         let on = |axis: usize, value: Option<f64>| value.and_then(|value| length(axis, value));
         let number = |motion| match motion {
             Motion::Rapid => 0.0,
-            Motion::Feed | Motion::Tap => 1.0,
+            Motion::Feed | Motion::Tap(_) => 1.0,
             Motion::Arc { clockwise: true } => 2.0,
             Motion::Arc { clockwise: false } => 3.0,
             Motion::Cycle(number) => f64::from(number),

@@ -17,14 +17,32 @@ pub enum Spindle {
     Clockwise,
     /// It turns counter-clockwise (M4).
     CounterClockwise,
-    /// A tapping cycle turns it; the hand of its thread is not read.
+    /// A tapping cycle turns it, which states no hand of its thread, after no M3 or M4.
     Tapping,
-    /// A cycle that taps a right-hand thread turns it (G84).
+    /// A cycle that taps a right-hand thread turns it.
     RightTap,
-    /// A cycle that taps a left-hand thread turns it (G74).
+    /// A cycle that taps a left-hand thread turns it.
     LeftTap,
     /// A tapping cycle has ended, which leaves it standing or turning, by the control and by rigid tapping.
     AfterTapping,
+}
+
+/// The hand of a thread that is tapped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::gcode) enum Thread {
+    Right,
+    Left,
+}
+
+impl Thread {
+    /// Returns the hand that the sign of a pitch states; `None` for 0.
+    pub(in crate::gcode) fn of_pitch(pitch: f64) -> Option<Thread> {
+        match pitch {
+            _ if pitch > 0.0 => Some(Thread::Right),
+            _ if pitch < 0.0 => Some(Thread::Left),
+            _ => None,
+        }
+    }
 }
 
 /// The words of the program about the spindle.
@@ -37,8 +55,8 @@ pub(super) struct SpindleWords {
     pub(super) paused: bool,
     /// Set by M29: the tapping cycles after it turn the spindle themselves.
     pub(super) rigid: bool,
-    /// The tapping cycle (G74 or G84) that left the spindle, and found it turning.
-    pub(super) tapping: Option<u32>,
+    /// The thread of the tapping cycle that left the spindle, and found it turning.
+    pub(super) tapping: Option<Thread>,
 }
 
 impl SpindleWords {
@@ -101,16 +119,24 @@ impl Control {
 
     /// Returns whether a tapping cycle finds the spindle as it needs it: turning into its thread, unless the cycle turns it itself
     /// (M29), or the same cycle was before.
-    pub(super) fn can_tap(&mut self, number: u32) -> bool {
-        let wanted = if number == 84 { Spindle::Clockwise } else { Spindle::CounterClockwise };
-        let spindle = self.spindle(false);
-        self.spindle.rigid || spindle == wanted || self.spindle.tapping == Some(number)
+    pub(super) fn can_tap(&mut self, thread: Thread) -> bool {
+        self.spindle.rigid || self.thread_of_spindle() == Some(thread)
     }
 
-    /// Notes the end of a tapping cycle.
-    pub(super) fn end_tapping(&mut self, number: u32) {
+    /// Returns the thread that the spindle taps as it turns, or as it did before the same cycle.
+    pub(in crate::gcode) fn thread_of_spindle(&mut self) -> Option<Thread> {
+        match self.spindle(false) {
+            Spindle::Clockwise => Some(Thread::Right),
+            Spindle::CounterClockwise => Some(Thread::Left),
+            Spindle::AfterTapping => self.spindle.tapping,
+            _ => None,
+        }
+    }
+
+    /// Notes the end of a tapping cycle, which leaves the spindle standing or turning.
+    pub(in crate::gcode) fn end_tapping(&mut self, thread: Option<Thread>) {
         self.spindle.turn = Spindle::AfterTapping;
-        self.spindle.tapping = Some(number).filter(|_| !self.spindle.rigid);
+        self.spindle.tapping = thread.filter(|_| !self.spindle.rigid);
     }
 
     /// Stops the spindle for a tool change. It stays unstated if it was.

@@ -13,7 +13,7 @@ use super::block::{Coordinate, Words};
 use super::expression::{Parameter, value};
 use super::line::Cursor;
 use super::words::{Entry, Treatment, find_cycle};
-use crate::gcode::control::Control;
+use crate::gcode::control::{Control, Thread};
 use crate::gcode::error::{combination, missing, not_read};
 use crate::gcode::note::NoteKind;
 use crate::gcode::{GcodeFault, MAX_CYCLE_STEPS};
@@ -41,6 +41,8 @@ pub(super) struct Cycle {
     side: Option<Side>,
     /// The bore that cycle 208 mills.
     bore: Option<Bore>,
+    /// The thread of rigid tapping, by the sign of its pitch (Q239).
+    thread: Option<Thread>,
 }
 
 /// A bore that is milled on a helix.
@@ -406,16 +408,21 @@ impl Program<'_> {
         let (top, bottom) = (surface + cycle.clearance, surface + cycle.depth);
         let clear = surface + cycle.second.max(cycle.clearance);
         let is_tap = matches!(cycle.number, 206 | 207 | 209);
-        control.move_to_level(top, true, false);
+        control.move_to_level(top, true);
         if let Some(infeed) = cycle.infeed {
             infeeds(cycle, infeed, [surface, top, bottom], control)?;
         }
         match cycle.bore {
             Some(bore) => mill(bore, [top, bottom], control)?,
-            None => control.move_to_level(bottom, false, is_tap),
+            None if is_tap => {
+                // Cycle 206 taps as the spindle turns.
+                let thread = cycle.thread.or_else(|| control.thread_of_spindle());
+                control.tap([top, bottom], thread);
+            }
+            None => control.move_to_level(bottom, false),
         }
         match cycle.number {
-            201 | 203 => control.move_to_level(top, cycle.is_fast, false),
+            201 | 203 => control.move_to_level(top, cycle.is_fast),
             202 => {
                 let aside = cycle.side.map(|Side { axis, sign }| {
                     (axis, sign * DISENGAGING * self.frame.mirror[axis])
@@ -423,19 +430,15 @@ impl Program<'_> {
                 if let Some((axis, increment)) = aside {
                     control.move_by(axis, increment, false);
                 }
-                control.move_to_level(top, cycle.is_fast, false);
-                control.move_to_level(clear, true, false);
+                control.move_to_level(top, cycle.is_fast);
+                control.move_to_level(clear, true);
                 if let Some((axis, increment)) = aside {
                     control.move_by(axis, -increment, true);
                 }
             }
-            _ if is_tap => {
-                control.move_to_level(top, false, true);
-                control.leave_thread();
-            }
             _ => {}
         }
-        control.move_to_level(clear, true, false);
+        control.move_to_level(clear, true);
         Ok(())
     }
 }
@@ -465,9 +468,9 @@ fn infeeds(
         // A decrement beyond the least infeed stops there.
         depth = (depth - infeed.decrement).max(infeed.least.min(depth));
         if index % infeed.count == 0 {
-            control.move_to_level(level, false, false);
-            control.move_to_level(top, is_fast, false);
-            control.move_to_level((level + infeed.stop).min(top), true, false);
+            control.move_to_level(level, false);
+            control.move_to_level(top, is_fast);
+            control.move_to_level((level + infeed.stop).min(top), true);
         }
         steps += 3;
         if steps > MAX_CYCLE_STEPS {
@@ -497,7 +500,7 @@ fn mill(bore: Bore, [top, bottom]: [f64; 2], control: &mut Control) -> Result<()
         return Err(not_read("Q335 of CYCL DEF 208", meaning, "post the program with CP"));
     }
     if radius < SAME_DIAMETER {
-        control.move_to_level(bottom, false, false);
+        control.move_to_level(bottom, false);
         return Ok(());
     }
     control.notes.add_once(control.block(), NoteKind::HelixStart);
@@ -581,7 +584,8 @@ fn cycle(given: &Given, unit: f64) -> Result<Cycle, GcodeFault> {
     };
     let is_fast =
         matches!(number, 201..=203) && given.get(208).is_some_and(|feed| feed >= RAPID_FEED);
-    Ok(Cycle { number, clearance, depth, surface, second, infeed, is_fast, side, bore })
+    let thread = Thread::of_pitch(given.length(239)).filter(|_| is_thread(number));
+    Ok(Cycle { number, clearance, depth, surface, second, infeed, is_fast, side, bore, thread })
 }
 
 fn is_thread(number: u32) -> bool {

@@ -7,7 +7,7 @@
 use super::expression::{Value, expression};
 use super::text::Cursor;
 use super::variables::Variables;
-use crate::gcode::control::{Hole, Retract, Swivel};
+use crate::gcode::control::{Hole, Retract, Swivel, Tapping, Thread};
 use crate::gcode::error::{combination, missing, not_read};
 use crate::gcode::state::about;
 use crate::gcode::{Alignment, ExpressionFault, GcodeFault};
@@ -156,13 +156,15 @@ pub(super) fn hole(
     };
     match *cycle {
         "CYCLE84" | "CYCLE840" => {
-            let turn = given.digits(if *cycle == "CYCLE84" { 6 } else { 7 })?;
-            hole.tapping = Some(turn);
+            let after = given.digits(if *cycle == "CYCLE84" { 6 } else { 7 })?;
             // Its feed is the pitch times the speed.
             let pitch = if *cycle == "CYCLE84" { [7, 8] } else { [9, 10] };
-            let has_pitch =
-                given.number_or_zero(pitch[0])? != 0.0 || given.number_or_zero(pitch[1])? != 0.0;
-            hole.has_feed = has_pitch;
+            let [size, pitch] = pitch.map(|index| given.number_or_zero(index));
+            let pitch = Some(size?).filter(|size| *size != 0.0).unwrap_or(pitch?);
+            hole.has_feed = pitch != 0.0;
+            // CYCLE840 taps as the spindle turns.
+            let thread = Thread::of_pitch(pitch).filter(|_| *cycle == "CYCLE84");
+            hole.tapping = Some(Tapping { thread, after });
             hole.returns_at_feed = true;
         }
         "CYCLE85" => {

@@ -3,7 +3,7 @@
 use super::super::{BlindWay, Level, StepFault};
 use super::{Band, Resolved, Resolver, UPRIGHT};
 use crate::gcode::{Position, Step, Z_ALONE};
-use crate::machine::{Axis, Chain, JointMotion, Joints, Letter, Side};
+use crate::machine::{Axis, Chain, JointMotion, Joints, Side};
 use nalgebra::Vector3;
 
 impl Resolver<'_> {
@@ -27,15 +27,15 @@ impl Resolver<'_> {
         if !(starts_at_level || ends_at_level && ends_blind || states_z || goes_aside) {
             return None;
         }
-        let is_at_top = ends.iter().all(|end| end[2].is_some_and(|z| self.is_top(z)));
+        let is_at_top = ends.iter().all(|end| end[2].is_some_and(|z| self.stands_at_top(z)));
         // From wherever the operator has left it, Z alone goes to the top of its travel or to its reference position, at which the others
         // are free.
-        let is_retract = step.commanded == Z_ALONE && !starts_at_level && self.is_at_top;
-        let is_aside = self.was_at_top && self.is_at_top && !step.commanded[2];
+        let is_retract = step.commanded == Z_ALONE && !starts_at_level && self.at_top.is_some();
+        let is_aside = self.was_at_top.is_some() && self.at_top.is_some() && !step.commanded[2];
         let chain = self.chain.as_ref()?.1.without_linear_limits();
         let turns =
             |k: usize| ends.iter().any(|end| is_unknown(k, end)) || ends[0][k] != ends[1][k];
-        // What the table tilts by unknown angles is as high as it can swing.
+        // A part that the table tilts by unknown angles is as high as it can swing.
         let tilts = |side: Side| self.tilting(&turns).any(|axis| axis.side == side);
         let is_of_head = tilts(Side::Tool) && !tilts(Side::Table);
         if is_at_top && self.tilting(&turns).next().is_some()
@@ -53,9 +53,15 @@ impl Resolver<'_> {
         Some(BlindWay { levels, is_at_top })
     }
 
-    /// Returns the level of the gauge point during a step that moves axes aside at the top of Z's travel.
+    /// Returns the level of the gauge point during a step that moves axes aside at the top of Z's travel, or at a reference position, or
+    /// that leads to one below the top.
     pub(in crate::check) fn top_way(&mut self, step: &Step) -> Option<BlindWay> {
-        if !(self.is_placed && self.was_at_top && self.is_at_top) || step.commanded[2] {
+        let height = self.at_top.filter(|height| match step.commanded[2] {
+            // From the tip of a tool of unknown length it may lead down.
+            true => !self.is_top(*height),
+            false => self.was_at_top.is_some(),
+        })?;
+        if !self.is_placed {
             return None;
         }
         // A machine without a chain to the gauge point has refused every motion.
@@ -66,23 +72,21 @@ impl Resolver<'_> {
             return None;
         }
         let mut joints = self.joints.map(Option::unwrap_or_default);
-        // The reference position can be lower than the end of the travel, and counts as the top, too.
-        let top = self.setup.top.unwrap_or_default();
-        let home = self.machine.axis(Letter::Z).and_then(|axis| axis.home);
-        joints[2] = home.map_or(top, |home| home.min(top));
+        joints[2] = height;
         let levels = self.levels_while(&chain, &joints, &turns);
-        Some(BlindWay { levels, is_at_top: true })
+        // The reference position can be lower than the end of the travel, and counts as the top, too.
+        Some(BlindWay { levels, is_at_top: height >= self.reference_height() })
     }
 
-    /// Returns the level of rapid traverse from one joint position to another at any rates of its axes.
-    pub(super) fn way_at_any_rates(&self, chain: &Chain, joints: [Joints; 2]) -> BlindWay {
-        let [start, end] = joints;
-        let lowest = start[2].min(end[2]);
-        let levels = joints.map(|mut joints| {
+    /// Returns the level of a way between two joint positions on which Z is nowhere below `lowest`.
+    pub(super) fn level_way(&self, chain: &Chain, ends: [Joints; 2], lowest: f64) -> BlindWay {
+        let chain = chain.without_linear_limits();
+        let [start, end] = ends;
+        let [one, other] = ends.map(|mut joints| {
             joints[2] = lowest;
-            self.levels_while(&chain.without_linear_limits(), &joints, &|k| start[k] != end[k])
+            self.levels_while(&chain, &joints, &|k| start[k] != end[k])
         });
-        BlindWay { levels: Level::lower(&levels[0], &levels[1]), is_at_top: self.is_top(lowest) }
+        BlindWay { levels: Level::lower(&one, &other), is_at_top: self.stands_at_top(lowest) }
     }
 
     /// Returns the known motions of a step without a tool, with the levels of the spindle's gauge point.
@@ -104,19 +108,14 @@ impl Resolver<'_> {
             | Resolved::Loaded(motion) => vec![(motion, 0.0)],
             Resolved::Unknown(_) | Resolved::ToolChange => return Ok(None),
         };
-        let chain = self.chain(0.0)?.without_linear_limits();
+        let chain = self.chain(0.0)?;
         let ways = motions.into_iter().map(|(motion, error)| {
             let ends = [0.0, 1.0].map(|at| motion.joints(at));
             // Under tool centre point control Z follows the axes that turn.
-            let Some(lowest) = motion.lowest_z().map(|z| z - error) else {
-                return BlindWay { levels: vec![Level::BELOW; chain.link() + 1], is_at_top: false };
-            };
-            let turns = |k: usize| ends[0][k] != ends[1][k];
-            let [one, other] = ends.map(|mut joints| {
-                joints[2] = lowest;
-                self.levels_while(&chain, &joints, &turns)
-            });
-            BlindWay { levels: Level::lower(&one, &other), is_at_top: self.is_top(lowest) }
+            match motion.lowest_z() {
+                Some(lowest) => self.level_way(&chain, ends, lowest - error),
+                None => BlindWay { levels: vec![Level::BELOW; chain.link() + 1], is_at_top: false },
+            }
         });
         Ok(ways.reduce(|one, other| BlindWay {
             levels: Level::lower(&one.levels, &other.levels),

@@ -72,9 +72,16 @@ pub(super) struct Band {
 pub(super) struct AnyRapid {
     /// The motion if all axes arrive together.
     pub(super) straight: JointMotion,
-    /// The motions of each axis by itself from the start, if no rotary axis moves: the axes' positions at any rates are
-    /// those of the box that they span.
-    pub(super) edges: Option<Vec<JointMotion>>,
+    /// What is checked of other rates.
+    pub(super) other_rates: OtherRates,
+}
+
+/// What is checked of rapid traverse at other rates than those of a straight motion.
+pub(super) enum OtherRates {
+    /// The box of the axes' positions: the motions of each axis by itself from the start.
+    Box(Vec<JointMotion>),
+    /// The level of the way alone: the turn of a rotary axis spans no box.
+    Level(BlindWay),
 }
 
 /// Resolves the steps of a program in their order.
@@ -105,16 +112,15 @@ pub(super) struct Resolver<'a> {
     height: Height,
     /// The chain for the last tool length.
     chain: Option<(f64, Chain)>,
-    /// Set while Z is at the top of its travel, to which the program has moved it.
-    is_at_top: bool,
-    /// Set if it was before the last step.
-    was_at_top: bool,
+    /// The height of the spindle's gauge point while Z is at the top of its travel or at a reference position, to which the program has
+    /// moved it.
+    at_top: Option<f64>,
+    /// That before the last step.
+    was_at_top: Option<f64>,
     /// The last step, if X, Y or rotary axes are not known on it, and Z is.
     pub(super) blind_way: Option<BlindWay>,
     /// The last step, if it leaves for a reference position that is not known, in more axes than Z.
     pub(super) way_home: Option<BlindWay>,
-    /// The last step, if it is rapid traverse of several axes whose rates are unknown, and one of them is rotary.
-    pub(super) rotary_way: Option<BlindWay>,
     /// The known motions of the last step, if the spindle is empty.
     pub(super) empty_way: Option<BlindWay>,
     /// The joint values after the last step, as far as they are known.
@@ -190,11 +196,10 @@ impl<'a> Resolver<'a> {
             part_position_unknown: setup.work_offsets[0].is_none()
                 && machine.has_rotary(Side::Table),
             height: Height::OfAxis,
-            is_at_top: false,
-            was_at_top: false,
+            at_top: None,
+            was_at_top: None,
             blind_way: None,
             way_home: None,
-            rotary_way: None,
             empty_way: None,
             chain: None,
             joints,
@@ -207,8 +212,7 @@ impl<'a> Resolver<'a> {
     /// # Errors
     /// If the motion is not possible on the machine, or a length or an origin is missing.
     pub(super) fn resolve(&mut self, step: &Step) -> Result<Resolved, StepFault> {
-        (self.blind_way, self.way_home) = (None, None);
-        (self.rotary_way, self.empty_way) = (None, None);
+        (self.blind_way, self.way_home, self.empty_way) = (None, None, None);
         let is_empty = self.setup.is_spindle_empty(step.state.tool);
         if !is_empty && self.cause.is_of_empty() {
             self.cause = UnknownCause::TipHeight;
@@ -216,7 +220,7 @@ impl<'a> Resolver<'a> {
         if !matches!(step.path, StepPath::ToolChange(_)) {
             self.follow_height(step);
         }
-        self.was_at_top = self.is_at_top;
+        self.was_at_top = self.at_top;
         let before = self.joints;
         let resolved = self.resolve_step(step)?;
         if !matches!(resolved, Resolved::ToolChange | Resolved::Loaded(_)) {
@@ -245,7 +249,7 @@ impl<'a> Resolver<'a> {
             // Positions of a part that turns move Z, those of the axes do not. In a tilted plane no length offset is read.
             let is_upright = !state.turns_with_workpiece()
                 || matches!(step.path, StepPath::Machine(_) | StepPath::Align);
-            let is_top = self.is_top(z) && is_upright;
+            let is_top = self.stands_at_top(z) && is_upright;
             if is_top && !step.commanded[2] {
                 return;
             }
@@ -253,7 +257,7 @@ impl<'a> Resolver<'a> {
             let is_any = step.rapid && matches!(self.rapid, RapidPath::Any);
             let is_box = is_any && matches!(step.path, StepPath::Line);
             if !(is_top && (step.commanded == Z_ALONE || is_box)) {
-                (self.joints[2], self.is_at_top) = (None, false);
+                (self.joints[2], self.at_top) = (None, None);
                 // The height before a tool is named is the operator's.
                 self.cause = match self.height {
                     Height::OfTip(None) => UnknownCause::Start,
@@ -266,7 +270,8 @@ impl<'a> Resolver<'a> {
 
     fn resolve_step(&mut self, step: &Step) -> Result<Resolved, StepFault> {
         if step.commanded[2] {
-            self.is_at_top = step.is_homeward;
+            let height = step.machine_height.unwrap_or(self.reference_height());
+            self.at_top = step.is_homeward.then_some(height);
         }
         if let StepPath::ToolChange(target) = step.path {
             if !step.commanded.contains(&true) {
@@ -284,8 +289,9 @@ impl<'a> Resolver<'a> {
                 }
             }
             // At the reference position of Z other axes are free, too.
-            let is_high = |z: f64| self.is_top(z) || self.setup.home[2] == Some(z);
-            self.is_at_top |= step.commanded[2] && self.joints[2].is_some_and(is_high);
+            let is_high = |z: &f64| self.is_top(*z) || self.setup.home[2] == Some(*z);
+            let height = self.joints[2].filter(|z| step.commanded[2] && is_high(z));
+            self.at_top = height.or(self.at_top);
             self.leave_plane(step, &before);
             return Ok(Resolved::ToolChange);
         }
@@ -298,6 +304,7 @@ impl<'a> Resolver<'a> {
             Located::Known(frame) => frame,
             Located::Unknown(cause) => {
                 let lost = self.lose_linear(step, cause);
+                self.rise_to_top(step);
                 // The way home of machine coordinates is the same with and without the length offset: of Z alone, and of others at its top.
                 let is_free = self.is_way_home_free(step);
                 return Ok(match cause {
@@ -333,6 +340,7 @@ impl<'a> Resolver<'a> {
         let [start, end] = ends.map(|position| known(&position));
         let Some(end) = end else {
             self.forget(&frame, &ends[1]);
+            self.rise_to_top(step);
             let cause = self.unknown_end(step, &current);
             return match start.filter(|_| cause == UnknownCause::Home) {
                 Some(start) => self.leave(step, &frame, frame.joints(start)),
@@ -424,7 +432,7 @@ impl<'a> Resolver<'a> {
         if step.commanded != Z_ALONE {
             self.way_home = Some(BlindWay {
                 levels: self.levels(&chain, &joints),
-                is_at_top: self.is_top(joints[2]),
+                is_at_top: self.stands_at_top(joints[2]),
             });
             return Ok(Resolved::Unknown(UnknownCause::Home));
         }
@@ -470,9 +478,32 @@ impl<'a> Resolver<'a> {
         self.is_placed && z >= self.setup.top.unwrap_or_default()
     }
 
+    /// Returns whether Z is there at a joint value, which is not that of the tip of a tool.
+    fn stands_at_top(&self, z: f64) -> bool {
+        self.height == Height::OfAxis && self.is_top(z)
+    }
+
+    /// Returns the place of Z's axis at the end of a step that leads to the top of its travel, whatever its tool is.
+    fn end_at_top(&self, step: &Step) -> Option<f64> {
+        step.machine_height.filter(|z| step.is_homeward && self.is_top(*z))
+    }
+
+    /// Notes the place of Z's axis after a step that leads to the top of its travel.
+    fn rise_to_top(&mut self, step: &Step) {
+        if let Some(top) = self.end_at_top(step) {
+            (self.joints[2], self.height) = (Some(top), Height::OfAxis);
+        }
+    }
+
+    /// Returns the height of the reference position of Z, or of the top of its travel if that is lower.
+    fn reference_height(&self) -> f64 {
+        let top = self.setup.top.unwrap_or_default();
+        self.setup.home[2].map_or(top, |home| home.min(top))
+    }
+
     /// Returns whether nothing is in the way home from an unknown place: of Z alone, or of other axes at its top.
     fn is_way_home_free(&self, step: &Step) -> bool {
-        self.was_at_top || step.commanded == Z_ALONE
+        self.was_at_top.is_some() || step.commanded == Z_ALONE
     }
 
     /// Returns whether an unknown motion is on the way from a tool change: that of Z to the top of its travel, or of other axes while it is
@@ -484,10 +515,10 @@ impl<'a> Resolver<'a> {
             && !step.commanded[3..].contains(&true)
             && (is_of_change || cause == UnknownCause::Return || cause.is_of_empty());
         let goes_home = step.is_homeward && (is_empty || self.is_way_home_free(step));
-        let stays_at_top = self.is_at_top && (goes_home || !step.commanded[2]);
+        let stays_at_top = self.at_top.is_some() && (goes_home || !step.commanded[2]);
         step.rapid
             && ((is_of_change || is_empty) && stays_at_top
-                || is_empty && arrives && self.was_at_top)
+                || is_empty && arrives && self.was_at_top.is_some())
     }
 
     /// Resolves the rest of a new tool where its change has left the axes. Without their joints, or the lengths on which these depend,
@@ -644,7 +675,7 @@ impl<'a> Resolver<'a> {
             _ => false,
         };
         // The way to a reference position before the first position is the operator's, too.
-        if lost().next().is_some() && (!is_start || knows_axis) {
+        if lost().next().is_some() && self.end_at_top(step).is_none() && (!is_start || knows_axis) {
             self.cause = UnknownCause::Return;
         } else if is_start {
             // The block states its own axes: the unknown one is another axis of the machine.
@@ -673,18 +704,17 @@ impl<'a> Resolver<'a> {
             // One axis alone moves straight at any rate.
             RapidPath::Any if moving.len() > 1 => {
                 let straight = path::line(chain, joints)?;
-                let is_linear = moving.iter().all(|k| *k < 3);
-                let edges = moving.iter().map(|k| {
-                    let mut to = start;
-                    to[*k] = end[*k];
-                    path::line(chain, [start, to])
-                });
-                if !is_linear {
-                    self.rotary_way = Some(self.way_at_any_rates(chain, joints));
-                }
-                // Ways that are straight span a box, the turn of a rotary axis does not.
-                let edges = is_linear.then(|| edges.collect()).transpose()?;
-                return Ok(Resolved::AnyRapid(Box::new(AnyRapid { straight, edges })));
+                let other_rates = if moving.iter().all(|k| *k < 3) {
+                    let edges = moving.iter().map(|k| {
+                        let mut to = start;
+                        to[*k] = end[*k];
+                        path::line(chain, [start, to])
+                    });
+                    OtherRates::Box(edges.collect::<Result<_, _>>()?)
+                } else {
+                    OtherRates::Level(self.level_way(chain, joints, start[2].min(end[2])))
+                };
+                return Ok(Resolved::AnyRapid(Box::new(AnyRapid { straight, other_rates })));
             }
             RapidPath::Any | RapidPath::Straight => None,
         };

@@ -1,0 +1,309 @@
+//! Ways of which only a level is known, and what is higher than it.
+//!
+//! The tool is nowhere below the level, wherever its other axes are. What it can meet is a set of points on a link of the machine, of
+//! which it is the hull: the corners of a box around a mesh or the stock, or the ends of a solid of revolution.
+
+use super::{BodyFrame, BodyRole, Job, JobGap, JobStock, RevolvedBody, STOCK};
+use crate::check::CheckGap;
+use crate::gcode::BlockLine;
+use crate::machine::{Axis, Link, Machine, Setup, Side};
+use crate::{BlindWay, MachineProgram, MachineSummary, TopWay};
+use nalgebra::{Point3, Vector3};
+use std::f64::consts::{PI, TAU};
+use touchoff::Pose;
+
+/// Rounding of heights, in the part's unit.
+const LEVEL_ROUNDING: f64 = 1e-6;
+
+/// Number of points on a circle that bounds a solid of revolution: its polygon is up to 0.5 % wider.
+const CIRCLE_POINTS: u32 = 32;
+
+/// A gap of a way by the name of what is higher.
+type NamedGap = fn(String) -> JobGap;
+
+/// Something that is in a way which is lower.
+struct Obstacle<'a> {
+    name: &'a str,
+    /// The link with which it moves; `None` for the part, and what stands with it.
+    link: Option<Link>,
+    /// Points around it while all axes are at 0, in the part's unit.
+    hull: Hull,
+    /// Set for a fixture, which is in the way of a tool at the top of Z's travel, too.
+    is_fixture: bool,
+    /// The distance to keep from it, in the part's unit.
+    margin: f64,
+}
+
+/// Points around something, in a frame.
+enum Hull {
+    Part(Vec<Point3<f64>>),
+    Machine(Vec<Point3<f64>>),
+}
+
+/// Where obstacles stand while all axes of a machine are at 0.
+struct Setting<'a> {
+    machine: &'a Machine,
+    /// The pose of machine coordinates relative to the part, in its unit.
+    part: Pose,
+    /// Set if the origin of the part is stated.
+    is_placed: bool,
+}
+
+impl Setting<'_> {
+    /// Returns points in machine coordinates.
+    fn on_machine(&self, hull: &Hull) -> Vec<Point3<f64>> {
+        match hull {
+            Hull::Machine(points) => points.clone(),
+            Hull::Part(points) => {
+                let turn = self.part.rotation().transpose();
+                points.iter().map(|point| Point3::from(turn * (point - self.part.tip()))).collect()
+            }
+        }
+    }
+
+    /// Returns points in the part's frame.
+    fn on_part(&self, hull: &Hull) -> Vec<Point3<f64>> {
+        match hull {
+            Hull::Part(points) => points.clone(),
+            Hull::Machine(points) => {
+                let place =
+                    |point: &Point3<f64>| self.part.tip() + self.part.rotation() * point.coords;
+                points.iter().map(place).collect()
+            }
+        }
+    }
+}
+
+impl Job<'_> {
+    /// Returns the ways of each reading that are lower than a body or the stock: those to the first position and to a reference position
+    /// that is not known, of which X and Y are not known at one of their ends, and so what is between, those of rotary axes at rates that
+    /// are not known, those of an empty spindle, and those of a tool of unknown length at the top of Z's travel.
+    pub(super) fn low_ways(&self) -> Vec<(BlockLine, JobGap)> {
+        let Some(first) = self.program.readings().first() else { return Vec::new() };
+        let obstacles = self.obstacles();
+        let setting = self.setting(first);
+        let above = |way: &BlindWay, least: f64| {
+            let heights = obstacles.iter().filter_map(|obstacle| {
+                Some((obstacle.name, self.height_above(obstacle, way, setting.as_ref())?))
+            });
+            let highest = heights.max_by(|one, other| one.1.total_cmp(&other.1));
+            highest.filter(|(_, height)| *height > least).map(|(name, _)| name.to_owned())
+        };
+        let mut low = Vec::new();
+        for reading in self.program.readings() {
+            let MachineSummary { blind_ways, ways_home, rotary_ways, empty_ways, top_ways, .. } =
+                reading.summary();
+            // A tool may touch what it passes over, and the nose of a spindle may not.
+            let kinds: [(_, NamedGap, _); 4] = [
+                (blind_ways, |name| JobGap::LowWay { name }, LEVEL_ROUNDING),
+                (ways_home, |name| JobGap::LowWayHome { name }, LEVEL_ROUNDING),
+                (rotary_ways, rotary_gap, LEVEL_ROUNDING),
+                (empty_ways, |name| JobGap::LowSpindle { name }, -LEVEL_ROUNDING),
+            ];
+            for (ways, gap, least) in kinds {
+                for (block, way) in ways {
+                    low.extend(above(way, least).map(|name| (*block, gap(name))));
+                }
+            }
+            // Bodies that are not apart by the level of the tool can meet wherever it is.
+            if let (Some((block, _)), Some(body)) = (rotary_ways.first(), self.unlevelled()) {
+                low.push((*block, rotary_gap(body.name.clone())));
+            }
+            for TopWay { block, tool, length, way } in top_ways {
+                let Some(info) = self.tool_of(*tool).map(|tool| tool.tool.info()) else { continue };
+                // The tip of a tool of unknown length is at least as low as the tool is drawn.
+                let below = length.unwrap_or(info.reach().high * info.unit.millimetres());
+                let mut way = way.clone();
+                way.levels.iter_mut().for_each(|level| level.height -= below);
+                if let Some(name) = above(&way, LEVEL_ROUNDING) {
+                    low.push((*block, JobGap::LowTop { name, tool: *tool }));
+                }
+            }
+        }
+        low
+    }
+
+    /// Returns what a tool, or a body that moves with it, can meet.
+    fn obstacles(&self) -> Vec<Obstacle<'_>> {
+        let machine = self.program.machine();
+        // An allowance below 0 is a distance to keep.
+        let allowances = self.tools.iter().flat_map(|tool| &tool.allow).chain(&self.allow);
+        let part_margin = allowances.map(|(_, depth)| -depth).fold(0.0, f64::max);
+        let is_met = |index| self.revolved.iter().any(|moving| moving.against.contains(&index));
+        let bodies = self.bodies.iter().enumerate();
+        let bodies = bodies.filter(|(index, body)| body.meets_tools() || is_met(*index));
+        let bodies = bodies.map(|(_, body)| {
+            let corners = corners(body.bvh.bounds());
+            Obstacle {
+                name: &body.name,
+                link: machine.map(|machine| body.frame.link(machine)),
+                hull: match body.frame {
+                    BodyFrame::Machine(_) => Hull::Machine(corners),
+                    BodyFrame::Part | BodyFrame::Table(_) => Hull::Part(corners),
+                },
+                is_fixture: matches!(body.role, BodyRole::Fixture { .. }),
+                margin: match body.role {
+                    BodyRole::Part => part_margin,
+                    BodyRole::Fixture { margin } | BodyRole::Machine { margin, .. } => margin,
+                },
+            }
+        });
+        let revolved = self.revolved.iter().filter(|moving| {
+            let mut against = moving.against.iter().map(|index| &self.bodies[*index]);
+            // No tool is checked against it: what moves with the tool is.
+            machine.is_some_and(|machine| {
+                !is_of_tool(machine, moving.link)
+                    && against.any(|body| is_of_tool(machine, body.frame.link(machine)))
+            })
+        });
+        let revolved = revolved.map(|moving| Obstacle {
+            name: &moving.name,
+            link: Some(moving.link),
+            hull: Hull::Machine(self.hull(moving)),
+            is_fixture: false,
+            margin: moving.margin,
+        });
+        let stock = self.stock.as_ref().map(|stock| Obstacle {
+            name: STOCK,
+            link: machine.map(|machine| machine.last_link(Side::Table)),
+            hull: Hull::Part(corners(JobStock::bounds(stock))),
+            is_fixture: false,
+            margin: 0.0,
+        });
+        bodies.chain(revolved).chain(stock).collect()
+    }
+
+    /// Returns points around a solid of revolution, in machine coordinates while all axes are at 0, in the part's unit.
+    fn hull(&self, moving: &RevolvedBody<'_>) -> Vec<Point3<f64>> {
+        let (info, scale) = (moving.shape.info(), 1.0 / self.unit().millimetres());
+        let (reach, unit) = (info.reach(), info.unit.millimetres());
+        let outer = info.radius() / (PI / f64::from(CIRCLE_POINTS)).cos();
+        let mut points = Vec::new();
+        for z in [reach.low, reach.high] {
+            for point in 0..CIRCLE_POINTS {
+                let (sine, cosine) = (TAU * f64::from(point) / f64::from(CIRCLE_POINTS)).sin_cos();
+                let point = unit * Vector3::new(outer * cosine, outer * sine, z);
+                let point = moving.mount.tip() + moving.mount.rotation() * point;
+                points.push(scale * point);
+            }
+        }
+        points
+    }
+
+    /// Returns a body of the machine that can meet another one, both of which the tool moves with or neither: its level says nothing of
+    /// them.
+    fn unlevelled(&self) -> Option<&RevolvedBody<'_>> {
+        let machine = self.program.machine()?;
+        self.revolved.iter().find(|moving| {
+            let mut against = moving.against.iter().map(|index| self.bodies[*index].frame);
+            against.any(|frame| {
+                is_of_tool(machine, moving.link) == is_of_tool(machine, frame.link(machine))
+            })
+        })
+    }
+
+    /// Returns where obstacles stand on the machine, if there is one.
+    fn setting(&self, reading: &MachineProgram) -> Option<Setting<'_>> {
+        let machine = self.program.machine()?;
+        let origin = reading.part_origin();
+        let setup = Setup { work_offset: origin.unwrap_or_default(), tool_length: 0.0 };
+        // At a length of 0 the tip is at the origin of machine coordinates while all axes are at 0.
+        let pose = machine.chain(&setup).and_then(|chain| chain.pose(&[0.0; 6])).ok()?;
+        let tip = pose.tip() / self.unit().millimetres();
+        let part = Pose::from_computed(*pose.rotation(), tip);
+        Some(Setting { machine, part, is_placed: origin.is_some() })
+    }
+
+    /// Returns the height of an obstacle, with its margin, above a way; `None` for one that is not in it. What stands still on the machine
+    /// is out of the way at the top of Z's travel, and what moves with the tool anywhere.
+    fn height_above(
+        &self,
+        obstacle: &Obstacle<'_>,
+        way: &BlindWay,
+        setting: Option<&Setting<'_>>,
+    ) -> Option<f64> {
+        let Obstacle { hull, margin, is_fixture, .. } = obstacle;
+        let (part, links) = way.levels.split_last()?;
+        let unit = self.unit().millimetres();
+        let (Some(setting), Some(link)) = (setting, obstacle.link) else {
+            let Hull::Part(points) = hull else { return Some(f64::INFINITY) };
+            return Some(top(points, &part.up) - part.height / unit + margin);
+        };
+        let machine = setting.machine;
+        let is_at_part = link == machine.last_link(Side::Table);
+        let carriers: Vec<&Axis> =
+            machine.axes().iter().filter(|axis| axis.side == Side::Table).collect();
+        let index = match link {
+            _ if is_at_part => links.len(),
+            _ if link == machine.last_link(Side::Tool) => return None,
+            Link::Base => 0,
+            Link::Axis(letter) => match carriers.iter().position(|axis| axis.letter == letter) {
+                Some(index) => index + 1,
+                // X and Y of a head can be anywhere beside what another link of it carries.
+                None if way.is_at_top => return None,
+                None => return Some(f64::INFINITY),
+            },
+        };
+        if way.is_at_top && index == 0 && !is_at_part && !is_fixture {
+            return None;
+        }
+        let level = links.get(index).unwrap_or(part);
+        if level.height > f64::NEG_INFINITY {
+            let points = match index < links.len() {
+                true => setting.on_machine(hull),
+                false => setting.on_part(hull),
+            };
+            return Some(top(&points, &level.up) - level.height / unit + margin);
+        }
+        // An obstacle that is tilted by unknown angles of its carriers is as high as it can swing.
+        let Some(base) = way.levels.first().filter(|_| setting.is_placed) else {
+            return Some(f64::INFINITY);
+        };
+        let points = setting.on_machine(hull);
+        Some(swing(&carriers[..index], &points, unit) - base.height / unit + margin)
+    }
+}
+
+/// Returns the gap of rapid traverse of rotary axes, lower than something of a name.
+fn rotary_gap(name: String) -> JobGap {
+    JobGap::Motion(CheckGap::RotaryRapid { name })
+}
+
+/// Returns whether a link moves with the tool.
+fn is_of_tool(machine: &Machine, link: Link) -> bool {
+    match link {
+        // A head without axes stands still.
+        Link::Base => machine.last_link(Side::Tool) == Link::Base,
+        Link::Axis(letter) => machine.axis(letter).is_some_and(|axis| axis.side == Side::Tool),
+    }
+}
+
+/// Returns the corners of a box.
+fn corners([low, high]: [Point3<f64>; 2]) -> Vec<Point3<f64>> {
+    let corner = |index: usize| {
+        Point3::from(Vector3::from_fn(|k, _| if index >> k & 1 == 0 { low[k] } else { high[k] }))
+    };
+    (0..8).map(corner).collect()
+}
+
+/// Returns the height of points along a direction.
+fn top(points: &[Point3<f64>], up: &Vector3<f64>) -> f64 {
+    points.iter().map(|point| point.coords.dot(up)).fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// Returns the greatest Z of the machine that points reach at any angles of the rotary axes that carry them: that of the innermost axis and
+/// the distance of the farthest point from it, by way of the other axes. `carriers` are in order from the base, `unit` is in mm.
+fn swing(carriers: &[&Axis], points: &[Point3<f64>], unit: f64) -> f64 {
+    let (rotary, linear): (Vec<&Axis>, Vec<&Axis>) =
+        carriers.iter().partition(|axis| axis.letter.is_rotary());
+    let centres: Vec<Point3<f64>> = rotary.iter().map(|axis| axis.point / unit).collect();
+    let (Some(innermost), Some(outermost)) = (centres.first(), centres.last()) else {
+        return f64::INFINITY;
+    };
+    if linear.iter().any(|axis| axis.direction.z != 0.0) {
+        return f64::INFINITY;
+    }
+    let between: f64 = centres.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
+    let farthest = points.iter().map(|point| (point - outermost).norm()).fold(0.0, f64::max);
+    innermost.z + between + farthest
+}
