@@ -3,7 +3,7 @@
 //! The tool is nowhere below the level, wherever its other axes are. What it can meet is a set of points on a link of the machine, of
 //! which it is the hull: the corners of a box around a mesh or the stock, or the ends of a solid of revolution.
 
-use super::{BodyFrame, BodyRole, Job, JobGap, JobStock, RevolvedBody, STOCK};
+use super::{Body, BodyFrame, BodyRole, Job, JobGap, JobStock, RevolvedBody, STOCK};
 use crate::check::CheckGap;
 use crate::gcode::BlockLine;
 use crate::machine::{Axis, Link, Machine, Setup, Side};
@@ -129,12 +129,19 @@ impl Job<'_> {
         // An allowance below 0 is a distance to keep.
         let allowances = self.tools.iter().flat_map(|tool| &tool.allow).chain(&self.allow);
         let part_margin = allowances.map(|(_, depth)| -depth).fold(0.0, f64::max);
-        let is_met = |index| self.revolved.iter().any(|moving| moving.against.contains(&index));
-        let bodies = self.bodies.iter().enumerate();
-        let bodies = bodies.filter(|(index, body)| body.meets_tools() || is_met(*index));
-        let bodies = bodies.map(|(_, body)| {
+        let margin_of = |body: &Body<'_>| match body.role {
+            BodyRole::Part => part_margin,
+            BodyRole::Fixture { margin } | BodyRole::Machine { margin, .. } => margin,
+        };
+        let moves_with_tool = |link: Link| machine.is_some_and(|machine| is_of_tool(machine, link));
+        let bodies = self.bodies.iter().enumerate().filter_map(|(index, body)| {
             let corners = corners(body.bvh.bounds());
-            Obstacle {
+            let met = self.revolved.iter().filter(|moving| moves_with_tool(moving.link));
+            let met = met.filter(|moving| moving.against.contains(&index));
+            // Of a pair the larger distance holds.
+            let margins = met.map(|moving| moving.margin);
+            let margins = margins.chain(body.meets_tools().then_some(0.0));
+            Some(Obstacle {
                 name: &body.name,
                 link: machine.map(|machine| body.frame.link(machine)),
                 hull: match body.frame {
@@ -142,26 +149,22 @@ impl Job<'_> {
                     BodyFrame::Part | BodyFrame::Table(_) => Hull::Part(corners),
                 },
                 is_fixture: matches!(body.role, BodyRole::Fixture { .. }),
-                margin: match body.role {
-                    BodyRole::Part => part_margin,
-                    BodyRole::Fixture { margin } | BodyRole::Machine { margin, .. } => margin,
-                },
-            }
-        });
-        let revolved = self.revolved.iter().filter(|moving| {
-            let mut against = moving.against.iter().map(|index| &self.bodies[*index]);
-            // No tool is checked against it: what moves with the tool is.
-            machine.is_some_and(|machine| {
-                !is_of_tool(machine, moving.link)
-                    && against.any(|body| is_of_tool(machine, body.frame.link(machine)))
+                margin: margins.reduce(f64::max)?.max(margin_of(body)),
             })
         });
-        let revolved = revolved.map(|moving| Obstacle {
-            name: &moving.name,
-            link: Some(moving.link),
-            hull: Hull::Machine(self.hull(moving)),
-            is_fixture: false,
-            margin: moving.margin,
+        // No tool is checked against a solid of revolution: the meshes that move with the tool are.
+        let revolved = self.revolved.iter().filter(|moving| !moves_with_tool(moving.link));
+        let revolved = revolved.filter_map(|moving| {
+            let machine = machine?;
+            let against = moving.against.iter().map(|index| &self.bodies[*index]);
+            let met = against.filter(|body| moves_with_tool(body.frame.link(machine)));
+            Some(Obstacle {
+                name: &moving.name,
+                link: Some(moving.link),
+                hull: Hull::Machine(self.hull(moving)),
+                is_fixture: false,
+                margin: met.map(margin_of).reduce(f64::max)?.max(moving.margin),
+            })
         });
         let stock = self.stock.as_ref().map(|stock| Obstacle {
             name: STOCK,
