@@ -103,6 +103,13 @@ pub enum Note {
         /// The one that was taken.
         taken: &'static str,
     },
+    /// The gauge length of the assembly is not the sum of stick-out and holder, which was taken.
+    GaugeLength {
+        /// The gauge length.
+        stated: f64,
+        /// The sum.
+        sum: f64,
+    },
     /// The holder begins below the end of the flutes: the collet holds the flutes.
     FlutesInHolder {
         /// The length of the flutes.
@@ -145,13 +152,15 @@ pub enum Note {
 impl Note {
     /// Returns whether a program that was made with the library's tool may hit where the imported tool does not.
     pub fn is_doubt(&self) -> bool {
-        matches!(
-            self,
+        match self {
             Note::NotDrawn { .. }
-                | Note::Origin(_)
-                | Note::NarrowFace { .. }
-                | Note::OtherExpression { .. }
-        )
+            | Note::Origin(_)
+            | Note::NarrowFace { .. }
+            | Note::OtherExpression { .. } => true,
+            // The holder would be lower than it is drawn.
+            Note::GaugeLength { stated, sum } => stated < sum,
+            _ => false,
+        }
     }
 
     /// Adds the note that a default was taken for a dimension, and returns it.
@@ -191,6 +200,12 @@ impl fmt::Display for Note {
                 decimal(first.value),
                 second.what,
                 decimal(second.value)
+            ),
+            Note::GaugeLength { stated, sum } => write!(
+                f,
+                "the gauge length of the assembly is {}, but the sum of stick-out and holder is {}; taken: the sum",
+                decimal(*stated),
+                decimal(*sum)
             ),
             Note::FlutesInHolder { flutes, stickout } => write!(
                 f,

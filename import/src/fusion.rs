@@ -75,11 +75,7 @@ fn read_tool(tool: &Object, kind: &str, title: &str) -> Result<Entry, String> {
         if let (Some(stickout), Some(gauge), Some(stated)) = (entry.stickout, gauge, stated) {
             let sum = stickout + gauge * holder.unit.factor_to(unit);
             if stated > 0.0 && (sum - stated).abs() > 1e-4 * sum.abs() {
-                entry.notes.push(Note::Contradiction {
-                    first: Stated { what: "gauge length of the assembly", value: stated },
-                    second: Stated { what: "sum of stick-out and holder", value: sum },
-                    taken: "sum",
-                });
+                entry.notes.push(Note::GaugeLength { stated, sum });
             }
         }
         entry.holder = Some(holder);

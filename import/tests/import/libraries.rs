@@ -205,4 +205,11 @@ fn doubts_and_hands_of_tools_are_told() {
     assert_eq!(fusion("}, \"shaft\": {\"description\": \"x\"").1.len(), 1);
     assert_eq!(fusion("}, \"expressions\": {\"tool_diameter\": \"44 mm\"").1.len(), 1);
     assert_eq!(fusion(", \"TA\": 0, \"DCX\": 50").1.len(), 1);
+    let gauge = |assembly: u32| {
+        fusion(&format!(
+            ", \"assemblyGaugeLength\": {assembly}}}, \"holder\": {{\"unit\": \"millimeters\", \"gaugeLength\": 40, \"segments\": \
+             [{{\"height\": 40, \"lower-diameter\": 30, \"upper-diameter\": 30}}]}}, \"x\": {{\"y\": 1"
+        ))
+    };
+    assert_eq!([60, 80, 100].map(|length| gauge(length).1.len()), [1, 0, 0]);
 }
