@@ -8,7 +8,7 @@ use serde_json::Value;
 pub(super) const LIBRARY: &str = r#"{ "version": 33, "data": [
   { "type": "ball end mill", "unit": "millimeters", "description": "D4 ball", "guid": "1", "vendor": "Example",
     "geometry": { "DC": 4, "RE": 2, "LCF": 10, "OAL": 50, "SFDM": 4, "LB": 30, "shoulder-length": 12,
-      "shoulder-diameter": 3.8, "assemblyGaugeLength": 47 },
+      "shoulder-diameter": 3.8, "assemblyGaugeLength": 48 },
     "holder": { "type": "holder", "unit": "millimeters", "description": "ER16 nut", "gaugeLength": 17.5,
       "segments": [ { "height": 1.1, "lower-diameter": 25.8, "upper-diameter": 28 },
                     { "height": 16.4, "lower-diameter": 28, "upper-diameter": 28 } ] },
@@ -27,7 +27,7 @@ fn an_imported_tool_checks_a_program() {
     assert_eq!(rows.len(), 2, "{}", stderr(&output));
     assert!(rows.iter().all(|row| row["proved"] == true), "{rows:?}");
     assert_eq!(rows[0]["stickout"], 30.0);
-    // The gauge lengths of holder and stick-out are 47.5, not 47.
+    // The gauge lengths of holder and stick-out are 47.5, not 48.
     assert!(rows[0]["notes"][0].as_str().is_some_and(|note| note.contains("47.5")), "{rows:?}");
     let tool = bench.place("tools/d4_ball.tool");
     let checked = touchoff(&["check", &tool]);
