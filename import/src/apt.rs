@@ -6,7 +6,8 @@
 //! distances as 0, or a centre on the axis for any corner, which states no centre. `TLDATA/MILL,d,r,h,b,a` has diameter, corner radius, height, and the angles
 //! of side and end; the corner's centre may follow, and after it the radius and the centre of an upper corner.
 //! `TLDATA/DRILL,MILL,d,r,h,p,l` has the angle of the point and the length of the flutes. `TOOL PATH/path,TOOL,name`
-//! names the tool of the next `TLDATA`. `LOADTL`, `TOOLNO` and NX's `LOAD/TOOL` give the number.
+//! names the tool of the next `TLDATA`. `LOADTL`, `TOOLNO` and NX's `LOAD/TOOL` give the number, and `CSI_SET_FLUTE_LENGTH` the length of the
+//! flutes of the `CUTTER` before it.
 
 use super::entry::{Entry, Note};
 use super::shape::{Cutter, Shape};
@@ -43,8 +44,8 @@ const DRILL: [&str; 5] = ["diameter", "corner radius", "length", "point angle", 
 pub(super) fn read(text: &str) -> Result<Vec<Found>, String> {
     let mut unit = None;
     let mut found: Vec<Statement> = Vec::new();
-    // A number or a name that stands before its cutter.
-    let mut pending = None;
+    // The number that was loaded last, in a program whose numbers stand before the cutters: it holds up to the next one.
+    let mut loaded = None;
     let mut name = String::new();
     // A `$` continues a statement in the next line.
     let mut continued = String::new();
@@ -82,12 +83,18 @@ pub(super) fn read(text: &str) -> Result<Vec<Found>, String> {
                     "LOAD" => continue,
                     _ => tool_number(first),
                 };
-                // In programs whose numbers stand after the cutters, a further number loads the same tool again.
+                // The first cutter tells whether numbers stand before the cutters or after them. There, a further number loads the same tool
+                // again.
                 let is_after = found.first().is_some_and(|first| first.is_before_number);
-                match found.last_mut() {
-                    Some(last) if last.number.is_none() => last.number = number,
-                    _ if is_after => {}
-                    _ => pending = number,
+                match found.last_mut().filter(|_| is_after) {
+                    Some(last) => last.number = last.number.or(number),
+                    None => loaded = number,
+                }
+            }
+            // SolidWorks CAM and CAMplete state it after the cutter.
+            "CSI_SET_FLUTE_LENGTH" => {
+                if let Some(last) = found.last_mut() {
+                    last.flute_length = rest.trim().parse().ok().filter(|length| *length > 0.0);
                 }
             }
             word @ ("CUTTER" | "TLDATA") => {
@@ -102,8 +109,9 @@ pub(super) fn read(text: &str) -> Result<Vec<Found>, String> {
                     name: std::mem::take(&mut name),
                     fields,
                     unit,
-                    is_before_number: pending.is_none(),
-                    number: pending.take(),
+                    is_before_number: loaded.is_none(),
+                    number: loaded,
+                    flute_length: None,
                 });
             }
             _ => {}
@@ -138,6 +146,8 @@ struct Statement {
     /// True if no number stood before the statement.
     is_before_number: bool,
     number: Option<u32>,
+    /// The length of the flutes of a `CUTTER`.
+    flute_length: Option<f64>,
 }
 
 /// All that a statement says of a tool but its number.
@@ -238,7 +248,8 @@ impl Statement {
                 let length = need(6, "height, the last of seven numbers")?;
                 let centre = centre(numbers[2], numbers[3]);
                 let [end, side] = [4, 5].map(|k| numbers[k].unwrap_or(0.0));
-                (general(diameter, corner, centre, [end, side]), length, length)
+                let flutes = self.flute_length.map_or(length, |flutes| flutes.min(length));
+                (general(diameter, corner, centre, [end, side]), flutes, length)
             }
         };
         let note = if flute_length < length {

@@ -140,6 +140,11 @@ pub enum Note {
         /// The largest diameter.
         largest: f64,
     },
+    /// The library states a taper angle, in degrees, of a shape that has none.
+    NotTapered {
+        /// The angle.
+        angle: f64,
+    },
     /// A neck is thinner than a twentieth of the cutting diameter: it would break.
     ThinNeck {
         /// The diameter of the neck.
@@ -156,6 +161,7 @@ impl Note {
             Note::NotDrawn { .. }
             | Note::Origin(_)
             | Note::NarrowFace { .. }
+            | Note::NotTapered { .. }
             | Note::OtherExpression { .. } => true,
             // The holder would be lower than it is drawn.
             Note::GaugeLength { stated, sum } => stated < sum,
@@ -237,6 +243,11 @@ impl fmt::Display for Note {
                 "the largest diameter is {}, but without a taper the face mill is drawn as wide as its diameter of {}: correct one of them",
                 decimal(*largest),
                 decimal(*diameter)
+            ),
+            Note::NotTapered { angle } => write!(
+                f,
+                "the taper angle is {}°, but its shape has none, and is drawn without a taper: choose a tapered shape, or remove the angle",
+                decimal(*angle)
             ),
             Note::ThinNeck { neck, diameter } => write!(
                 f,

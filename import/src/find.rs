@@ -235,7 +235,8 @@ pub fn write_numbers(
         "# The numbers of the tools in this folder; without a file, that of a tool that was left out.\n"
             .to_owned();
     for (number, files) in &numbers {
-        text += &format!("{number} = {files:?}\n");
+        let files = toml::Value::from(files.clone());
+        text += &format!("{number} = {files}\n");
     }
     AtomicFile::write(&path, text)
         .map_err(|source| FindError::Unwritable { file: path.display().to_string(), source })

@@ -195,11 +195,7 @@ fn cutter(stated: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cu
     if shape != "taperedballnose"
         && let Some(angle) = of.optional_angle("TaperAngle")?.filter(|angle| *angle != 0.0)
     {
-        notes.push(Note::Contradiction {
-            first: Stated { what: "taper angle", value: angle },
-            second: Stated { what: "taper angle of the shape", value: 0.0 },
-            taken: "shape",
-        });
+        notes.push(Note::NotTapered { angle });
     }
     let (mut shoulder, mut cutting_neck) = (None, 0.0);
     let flutes = || of.length("CuttingEdgeHeight");

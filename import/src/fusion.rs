@@ -36,8 +36,8 @@ fn read_tool(tool: &Object, kind: &str, title: &str) -> Result<Entry, String> {
     let geometry = Geometry(object(tool, "geometry")?.unwrap_or(&empty));
     // The hand of cut (ISO 13399): `false` is left.
     entry.left_handed = match kind {
-        "tap left hand" => Some(true),
-        "tap right hand" => Some(false),
+        "tap left hand" | "form tap left hand" => Some(true),
+        "tap right hand" | "form tap right hand" => Some(false),
         _ => geometry.0.get("HAND").and_then(Value::as_bool).map(|is_right| !is_right),
     };
     entry.cutter = Some(cutter(kind, tool, &geometry, &mut entry.notes)?);
@@ -84,7 +84,7 @@ fn read_tool(tool: &Object, kind: &str, title: &str) -> Result<Entry, String> {
 }
 
 /// The expressions of dimensions, from which Fusion 360 computes them anew when it reads the library.
-const EXPRESSIONS: [(&str, &str, &str); 9] = [
+const EXPRESSIONS: [(&str, &str, &str); 12] = [
     ("tool_diameter", "DC", "diameter"),
     ("tool_fluteLength", "LCF", "flute length"),
     ("tool_overallLength", "OAL", "overall length"),
@@ -94,9 +94,12 @@ const EXPRESSIONS: [(&str, &str, &str); 9] = [
     ("tool_shoulderLength", "shoulder-length", "shoulder length"),
     ("tool_shoulderDiameter", "shoulder-diameter", "shoulder diameter"),
     ("tool_tipDiameter", "tip-diameter", "tip diameter"),
+    ("tool_maximumCuttingDiameter", "DCX", "largest diameter"),
+    ("tool_taperAngle", "TA", "taper angle"),
+    ("tool_tipAngle", "SIG", "point angle"),
 ];
 
-/// Returns a note for each dimension whose expression is a length that differs. Other expressions are not computed.
+/// Returns a note for each dimension whose expression is a length or an angle that differs. Other expressions are not computed.
 fn contradicted_expressions(
     tool: &Object,
     geometry: &Geometry<'_>,
@@ -110,16 +113,16 @@ fn contradicted_expressions(
             Some(at) => text.split_at(at),
             None => (text, ""),
         };
-        let of = match of {
-            "mm" => Unit::Millimetre,
-            "in" => Unit::Inch,
-            "" => unit,
+        let factor = match of {
+            "mm" => Unit::Millimetre.factor_to(unit),
+            "in" => Unit::Inch.factor_to(unit),
+            "" | "deg" | "degrees" => 1.0,
             _ => continue,
         };
         let (Ok(value), Some(stated)) = (number.trim().parse::<f64>(), geometry.get(key)?) else {
             continue;
         };
-        let value = super::outline::rounded(value * of.factor_to(unit));
+        let value = super::outline::rounded(value * factor);
         if (value - stated).abs() > 1e-4 * stated.abs() {
             notes.push(Note::OtherExpression {
                 stated: Stated { what, value: stated },

@@ -161,7 +161,7 @@ impl Library {
             "hsmlib" | "xml" => ("an HSM tool library", text(content).and_then(|t| hsm::read(&t))),
             "tbl" => ("a LinuxCNC tool table", text(content).and_then(|t| linuxcnc::read(&t))),
             "apt" | "cl" | "cls" | "apt-cl" | "ncl" => {
-                ("an APT program", text(content).and_then(|t| apt::read(&t)))
+                ("an APT program", apt::read(&text_of_program(content)))
             }
             _ => return Err(ImportError::UnknownFormat { file: file.to_owned() }),
         };
@@ -318,6 +318,13 @@ fn text(content: &[u8]) -> Result<String, String> {
         .decode_without_bom_handling_and_without_replacement(&content[mark..])
         .map(String::from)
         .ok_or_else(|| format!("its text is not {}", encoding.name()))
+}
+
+/// Decodes a program as [`text`]; one that is not UTF-8 is in Windows-1252, as posts write names of tools.
+fn text_of_program(content: &[u8]) -> String {
+    text(content).unwrap_or_else(|_| {
+        encoding_rs::WINDOWS_1252.decode_without_bom_handling(content).0.into_owned()
+    })
 }
 
 /// Reads the tools of a JSON text; their keys tell which program wrote it.

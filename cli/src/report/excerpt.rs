@@ -1,10 +1,10 @@
 //! The text of a program around the lines of its findings.
 
 use crate::output::file_name;
-use touchoff::{Escaped, FileKind, read_text_file};
+use touchoff::Escaped;
 use touchoff_verify::gcode::SubprogramLine;
 use touchoff_verify::job::{FindingDetail, JobFile, JobFinding};
-use touchoff_verify::program::lines;
+use touchoff_verify::program::{lines, read_text};
 
 /// Number of lines before and after that of the worst motion.
 const AROUND: usize = 3;
@@ -43,7 +43,7 @@ pub(super) fn excerpts(job: &JobFile, findings: &[JobFinding]) -> Vec<Vec<Excerp
     let texts: Vec<String> = [&job.program]
         .into_iter()
         .chain(&job.subprograms)
-        .map(|file| read_text_file(file, FileKind::Program).unwrap_or_default())
+        .map(|file| read_text(file).unwrap_or_default())
         .collect();
     let texts: Vec<Vec<&str>> =
         texts.iter().map(|text| lines(text).map(|(_, line)| line).collect()).collect();

@@ -313,6 +313,12 @@ fn findings_show_the_program_around_them() {
     assert!(shown[2].2.starts_with("0,0,-0.5,0,0,1 # &lt;b>xxx"), "{}", shown[2].2);
     assert!(shown[2].2.ends_with("xx…") && shown[2].2.len() < 140, "{}", shown[2].2);
     assert_self_contained(&page);
+
+    // A program in Windows-1252.
+    std::fs::write(bench.place("path.csv"), b"# Fr\xe4sen\n0,0,1,0,0,1\n0,0,-0.5,0,0,1\n")
+        .expect("written");
+    let page = Page::write(&bench, &format!("block.stl {options}"));
+    assert_eq!(excerpt(page.rows()[0])[0].2, "# Fräsen");
 }
 
 /// Lines of a long program are in the file around findings alone.

@@ -132,10 +132,7 @@ fn freecad_has_commas_and_names_of_other_releases() {
     // A vendor's tapered ball on the shape of a straight one.
     let tapered = bit("ballend", r#""CuttingEdgeHeight": "15 mm", "TaperAngle": "5.000 °""#);
     let notes = &tapered.tools()[0].entry.notes;
-    assert!(matches!(
-        notes[..],
-        [Note::Contradiction { first: Stated { what: "taper angle", value: 5.0 }, .. }]
-    ));
+    assert!(matches!(notes[..], [Note::NotTapered { angle: 5.0 }]));
     let insert =
         parse("b.fctb", r#"{ "shape": "Iso_shape_C.fcstd", "parameter": { "TipAngle": "80 °" } }"#);
     assert_eq!(reasons(&insert), ["it is a turning insert, which is no solid of revolution"]);
@@ -243,6 +240,33 @@ fn a_number_after_a_cutter_is_not_that_of_the_next() {
     let numbers: Vec<Option<u32>> =
         parse("p.apt", &program).tools().iter().map(|tool| tool.entry.number).collect();
     assert_eq!(numbers, [Some(1), Some(2)]);
+}
+
+/// A number before a cutter holds up to the next number: a cutter that is stated again is the same tool, and another one shares the number.
+#[test]
+fn a_number_before_a_cutter_holds_up_to_the_next() {
+    let cutter = |d: u32| format!("CUTTER/{d},0,0,0,0,0,30\n");
+    let tools = |program: &str| -> Vec<(f64, Option<u32>)> {
+        let library = parse("p.apt", program);
+        let tools = library.tools().iter();
+        tools
+            .map(|tool| (tool.entry.cutter.as_ref().expect("a cutter").diameter, tool.entry.number))
+            .collect()
+    };
+    let program = format!("UNITS/MM\nLOADTL/2\n{0}{0}LOADTL/1\n{1}FINI\n", cutter(6), cutter(8));
+    assert_eq!(tools(&program), [(6.0, Some(2)), (8.0, Some(1))]);
+    let program = format!("UNITS/MM\nLOADTL/1\n{}{}FINI\n", cutter(6), cutter(8));
+    assert_eq!(tools(&program), [(6.0, Some(1)), (8.0, Some(1))]);
+}
+
+/// SolidWorks CAM states the flutes of a cutter apart; names of tools are in Windows-1252 where NX runs on Windows.
+#[test]
+fn programs_of_windows_state_flutes_and_names() {
+    let program = b"UNITS/MM\nTOOL PATH/A,TOOL,FR\xc4SER\nCUTTER/10,0,5,0,0,0,70\nLOAD/TOOL,1\nCSI_SET_FLUTE_LENGTH/22.\nFINI\n";
+    let library = Library::parse("a.cls".as_ref(), program).expect("a library");
+    let entry = &library.tools()[0].entry;
+    assert_eq!(entry.title, "FR\u{c4}SER");
+    assert_eq!(entry.cutter.as_ref().expect("a cutter").flute_length, 22.0);
 }
 
 #[test]

@@ -170,6 +170,12 @@ fn programs_select_tools_by_their_numbers() {
     assert!(matches!(found("T2"), Err(FindError::LeftOut { .. })));
     std::fs::remove_file(folder.path().join("tools.toml")).expect("removed");
     write_numbers(folder.path(), &tools, &[]).expect("written");
+    // Names of files may have characters that macOS divides.
+    std::fs::write(folder.path().join("tools.toml"), "T7 = [\"fra\u{308}ser.tool\"]\n")
+        .expect("written");
+    for _ in 0..2 {
+        write_numbers(folder.path(), &tools, &[]).expect("the list can be read");
+    }
     assert!(found("T1").is_ok_and(|file| file.is_file()));
 }
 
@@ -205,6 +211,23 @@ fn doubts_and_hands_of_tools_are_told() {
     assert_eq!(fusion("}, \"shaft\": {\"description\": \"x\"").1.len(), 1);
     assert_eq!(fusion("}, \"expressions\": {\"tool_diameter\": \"44 mm\"").1.len(), 1);
     assert_eq!(fusion(", \"TA\": 0, \"DCX\": 50").1.len(), 1);
+    let angle = |angle: &str| {
+        fusion(&format!(
+            ", \"TA\": 45, \"DCX\": 50}}, \"expressions\": {{\"tool_taperAngle\": \"{angle}\""
+        ))
+        .1
+        .len()
+    };
+    assert_eq!([angle("45 degrees"), angle("30 deg")], [0, 1]);
+    let tap = |kind: &str, hand: bool| {
+        let text = format!(
+            "{{\"data\": [{{\"type\": \"{kind}\", \"unit\": \"millimeters\", \"geometry\": {{\"DC\": 6, \"LCF\": 20, \"LB\": 40, \
+             \"OAL\": 70, \"SFDM\": 6, \"TP\": 1, \"SIG\": 90, \"tip-diameter\": 0, \"HAND\": {hand}}}}}], \"version\": 2}}"
+        );
+        of("l.json", &text).0
+    };
+    assert_eq!(tap("form tap left hand", true), Some(true));
+    assert_eq!(tap("form tap right hand", false), Some(false));
     let gauge = |assembly: u32| {
         fusion(&format!(
             ", \"assemblyGaugeLength\": {assembly}}}, \"holder\": {{\"unit\": \"millimeters\", \"gaugeLength\": 40, \"segments\": \

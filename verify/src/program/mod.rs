@@ -84,11 +84,11 @@ impl ProgramFile {
     }
 }
 
-/// Reads a file as text.
+/// Reads a program as text: UTF-8, or else Windows-1252.
 ///
 /// # Errors
 /// If it cannot be read, or is no text.
-pub(crate) fn read_text(path: &Path) -> Result<String, ProgramError> {
+pub fn read_text(path: &Path) -> Result<String, ProgramError> {
     let file = path.display().to_string();
     match read_regular_file(path, FileKind::Program) {
         Ok(bytes) => match decode(&bytes) {
