@@ -235,11 +235,21 @@ pub fn write_numbers(
         "# The numbers of the tools in this folder; without a file, that of a tool that was left out.\n"
             .to_owned();
     for (number, files) in &numbers {
-        let files = toml::Value::from(files.clone());
-        text += &format!("{number} = {files}\n");
+        let files: Vec<String> = files.iter().map(|file| toml_string(file)).collect();
+        text += &format!("{number} = [{}]\n", files.join(", "));
     }
     AtomicFile::write(&path, text)
         .map_err(|source| FindError::Unwritable { file: path.display().to_string(), source })
+}
+
+/// Returns a basic string of TOML.
+fn toml_string(text: &str) -> String {
+    let escaped = text.chars().map(|c| match c {
+        '"' | '\\' => format!("\\{c}"),
+        _ if c.is_control() => format!("\\u{:04x}", u32::from(c)),
+        _ => c.to_string(),
+    });
+    format!("\"{}\"", escaped.collect::<String>())
 }
 
 fn read_numbers(folder: &Path) -> Result<Numbers, FindError> {

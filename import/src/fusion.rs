@@ -5,7 +5,7 @@
 //! the shank, `SIG` a whole angle, `TA` the angle between the axis and a side.
 
 use super::entry::{Entry, Holder, Note, Section, Stated};
-use super::json::{Object, number, number_of, object, pair, string};
+use super::json::{Object, number, number_of, object, pair, string, truth};
 use super::shape::{Crest, Cutter, FormSegment, Shape, ShapeError};
 use super::{Found, Problem};
 use serde_json::Value;
@@ -38,7 +38,7 @@ fn read_tool(tool: &Object, kind: &str, title: &str) -> Result<Entry, String> {
     entry.left_handed = match kind {
         "tap left hand" | "form tap left hand" => Some(true),
         "tap right hand" | "form tap right hand" => Some(false),
-        _ => geometry.0.get("HAND").and_then(Value::as_bool).map(|is_right| !is_right),
+        _ => geometry.0.get("HAND").and_then(truth).map(|is_right| !is_right),
     };
     entry.cutter = Some(cutter(kind, tool, &geometry, &mut entry.notes)?);
     entry.notes.extend(contradicted_expressions(tool, &geometry, unit)?);

@@ -109,6 +109,11 @@ pub(super) fn number(value: &Value) -> Option<f64> {
     stated.filter(|number| number.is_finite())
 }
 
+/// Returns a truth. Some libraries have them as texts.
+pub(super) fn truth(value: &Value) -> Option<bool> {
+    value.as_bool().or_else(|| value.as_str()?.trim().parse().ok())
+}
+
 /// Returns a text of an object without blanks around it; empty if there is none.
 pub(super) fn string<'a>(object: &'a Object, key: &str) -> &'a str {
     object.get(key).and_then(Value::as_str).unwrap_or("").trim()

@@ -1,6 +1,6 @@
 //! Entries as files of other programs have them, against the same tools in plain notation.
 
-use super::super::{ImportError, Library, Note, Stated};
+use super::super::{ImportError, Library, Note};
 use super::{corners, fusion, library};
 use serde_json::{Value, json};
 use touchoff::tool::Tool;

@@ -326,11 +326,10 @@ impl MachineProgram {
         }
     }
 
-    /// Returns whether the length of a tool is stated, so that the joint values of its motions are known, given the origin of the
+    /// Returns the length of a tool in mm, if it is stated, so that the joint values of its motions are known, given the origin of the
     /// part.
-    pub(crate) fn is_length_known(&self, tool: Option<u32>) -> bool {
-        let tool = tool.or(self.unnamed_tool);
-        tool.is_some_and(|tool| self.setup.lengths.contains_key(&tool))
+    pub(crate) fn tool_length(&self, tool: Option<u32>) -> Option<f64> {
+        self.setup.lengths.get(&tool.or(self.unnamed_tool)?).copied()
     }
 
     /// Returns the summary of the program on its machine.
@@ -519,7 +518,7 @@ impl MachineProgram {
             );
             let is_change = matches!(resolved, Resolved::ToolChange | Resolved::Loaded(_));
             if !(is_empty || is_change || is_followed && has_length)
-                && let Some(way) = execution.resolver.top_way(&step)
+                && let Some(way) = execution.resolver.top_way(&step, has_length)
             {
                 let tool = number.or(self.unnamed_tool);
                 let length = tool.and_then(|tool| self.setup.lengths.get(&tool).copied());

@@ -22,7 +22,7 @@ pub(super) use modal::StatedModes;
 pub(crate) use refuse::band_radii;
 pub(super) use report::Report;
 pub use spindle::Spindle;
-pub(super) use spindle::Thread;
+pub(super) use spindle::{TapTurn, Thread};
 
 pub(super) use heidenhain::{Circle, Curve};
 

@@ -3,11 +3,11 @@
 //! The tool is nowhere below the level, wherever its other axes are. What it can meet is a set of points on a link of the machine, of
 //! which it is the hull: the corners of a box around a mesh or the stock, or the ends of a solid of revolution.
 
-use super::{Body, BodyFrame, BodyRole, Job, JobGap, JobStock, RevolvedBody, STOCK};
+use super::{Body, BodyFrame, BodyRole, Job, JobGap, JobStock, JobTool, RevolvedBody, STOCK};
 use crate::check::CheckGap;
 use crate::gcode::BlockLine;
 use crate::machine::{Axis, Link, Machine, Setup, Side};
-use crate::{BlindWay, MachineProgram, MachineSummary, TopWay};
+use crate::{BlindWay, MachineProgram, MachineSummary, ToolSelection, TopWay};
 use nalgebra::{Point3, Vector3};
 use std::f64::consts::{PI, TAU};
 use touchoff::Pose;
@@ -80,9 +80,10 @@ impl Job<'_> {
     /// are not known, those of an empty spindle, and those of a tool of unknown length at the top of Z's travel.
     pub(super) fn low_ways(&self) -> Vec<(BlockLine, JobGap)> {
         let Some(first) = self.program.readings().first() else { return Vec::new() };
-        let obstacles = self.obstacles();
+        // A body of the head can hang lower than a short tool, or than the gauge point of an empty spindle.
+        let [below_tips, below_nose] = [self.obstacles(self.shortest()), self.obstacles(0.0)];
         let setting = self.setting(first);
-        let above = |way: &BlindWay, least: f64| {
+        let above = |obstacles: &[Obstacle<'_>], way: &BlindWay, least: f64| {
             let heights = obstacles.iter().filter_map(|obstacle| {
                 Some((obstacle.name, self.height_above(obstacle, way, setting.as_ref())?))
             });
@@ -94,15 +95,15 @@ impl Job<'_> {
             let MachineSummary { blind_ways, ways_home, rotary_ways, empty_ways, top_ways, .. } =
                 reading.summary();
             // A tool may touch what it passes over, and the nose of a spindle may not.
-            let kinds: [(_, NamedGap, _); 4] = [
-                (blind_ways, |name| JobGap::LowWay { name }, LEVEL_ROUNDING),
-                (ways_home, |name| JobGap::LowWayHome { name }, LEVEL_ROUNDING),
-                (rotary_ways, rotary_gap, LEVEL_ROUNDING),
-                (empty_ways, |name| JobGap::LowSpindle { name }, -LEVEL_ROUNDING),
+            let kinds: [(_, _, NamedGap, _); 4] = [
+                (blind_ways, &below_tips, |name| JobGap::LowWay { name }, LEVEL_ROUNDING),
+                (ways_home, &below_tips, |name| JobGap::LowWayHome { name }, LEVEL_ROUNDING),
+                (rotary_ways, &below_tips, rotary_gap, LEVEL_ROUNDING),
+                (empty_ways, &below_nose, |name| JobGap::LowSpindle { name }, -LEVEL_ROUNDING),
             ];
-            for (ways, gap, least) in kinds {
+            for (ways, obstacles, gap, least) in kinds {
                 for (block, way) in ways {
-                    low.extend(above(way, least).map(|name| (*block, gap(name))));
+                    low.extend(above(obstacles, way, least).map(|name| (*block, gap(name))));
                 }
             }
             // Bodies that are not apart by the level of the tool can meet wherever it is.
@@ -115,7 +116,7 @@ impl Job<'_> {
                 let below = length.unwrap_or(info.reach().high * info.unit.millimetres());
                 let mut way = way.clone();
                 way.levels.iter_mut().for_each(|level| level.height -= below);
-                if let Some(name) = above(&way, LEVEL_ROUNDING) {
+                if let Some(name) = above(&below_tips, &way, LEVEL_ROUNDING) {
                     low.push((*block, JobGap::LowTop { name, tool: *tool }));
                 }
             }
@@ -123,8 +124,23 @@ impl Job<'_> {
         low
     }
 
-    /// Returns what a tool, or a body that moves with it, can meet.
-    fn obstacles(&self) -> Vec<Obstacle<'_>> {
+    /// Returns the length of the shortest tool, in the part's unit: as it is stated, or else as it is drawn.
+    fn shortest(&self) -> f64 {
+        let program = self.program.readings().first();
+        let lengths = self.tools.iter().map(|JobTool { tool, motions, .. }| {
+            let stated = match motions {
+                ToolSelection::All => None,
+                ToolSelection::Number(number) => program.and_then(|p| p.tool_length(*number)),
+            };
+            let info = tool.info();
+            stated.unwrap_or(info.reach().high * info.unit.millimetres())
+        });
+        lengths.reduce(f64::min).unwrap_or(0.0) / self.unit().millimetres()
+    }
+
+    /// Returns what a tool, or a body that moves with it, can meet. The tip is `below` the gauge point: bodies that hang lower need as much
+    /// more distance.
+    fn obstacles(&self, below: f64) -> Vec<Obstacle<'_>> {
         let machine = self.program.machine();
         // An allowance below 0 is a distance to keep.
         let allowances = self.tools.iter().flat_map(|tool| &tool.allow).chain(&self.allow);
@@ -133,14 +149,18 @@ impl Job<'_> {
             BodyRole::Part => part_margin,
             BodyRole::Fixture { margin } | BodyRole::Machine { margin, .. } => margin,
         };
+        let hang = |lowest: f64| (-lowest - below).max(0.0);
         let moves_with_tool = |link: Link| machine.is_some_and(|machine| is_of_tool(machine, link));
         let bodies = self.bodies.iter().enumerate().filter_map(|(index, body)| {
             let corners = corners(body.bvh.bounds());
             let met = self.revolved.iter().filter(|moving| moves_with_tool(moving.link));
             let met = met.filter(|moving| moving.against.contains(&index));
             // Of a pair the larger distance holds.
-            let margins = met.map(|moving| moving.margin);
-            let margins = margins.chain(body.meets_tools().then_some(0.0));
+            let margins = met.map(|moving| {
+                let lowest = self.hull(moving).iter().map(|point| point.z).reduce(f64::min);
+                moving.margin.max(margin_of(body)) + lowest.map_or(0.0, hang)
+            });
+            let margins = margins.chain(body.meets_tools().then(|| margin_of(body)));
             Some(Obstacle {
                 name: &body.name,
                 link: machine.map(|machine| body.frame.link(machine)),
@@ -149,7 +169,7 @@ impl Job<'_> {
                     BodyFrame::Part | BodyFrame::Table(_) => Hull::Part(corners),
                 },
                 is_fixture: matches!(body.role, BodyRole::Fixture { .. }),
-                margin: margins.reduce(f64::max)?.max(margin_of(body)),
+                margin: margins.reduce(f64::max)?,
             })
         });
         // No tool is checked against a solid of revolution: the meshes that move with the tool are.
@@ -158,12 +178,14 @@ impl Job<'_> {
             let machine = machine?;
             let against = moving.against.iter().map(|index| &self.bodies[*index]);
             let met = against.filter(|body| moves_with_tool(body.frame.link(machine)));
+            let margins =
+                met.map(|body| moving.margin.max(margin_of(body)) + hang(body.bvh.bounds()[0].z));
             Some(Obstacle {
                 name: &moving.name,
                 link: Some(moving.link),
                 hull: Hull::Machine(self.hull(moving)),
                 is_fixture: false,
-                margin: met.map(margin_of).reduce(f64::max)?.max(moving.margin),
+                margin: margins.reduce(f64::max)?,
             })
         });
         let stock = self.stock.as_ref().map(|stock| Obstacle {
@@ -294,19 +316,51 @@ fn top(points: &[Point3<f64>], up: &Vector3<f64>) -> f64 {
     points.iter().map(|point| point.coords.dot(up)).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// Returns the greatest Z of the machine that points reach at any angles of the rotary axes that carry them: that of the innermost axis and
-/// the distance of the farthest point from it, by way of the other axes. `carriers` are in order from the base, `unit` is in mm.
+/// Returns an upper bound on Z of the machine that points reach at any angles of the rotary axes that carry them: exact for one axis.
+/// `carriers` are in order from the base, `unit` is in mm.
 fn swing(carriers: &[&Axis], points: &[Point3<f64>], unit: f64) -> f64 {
     let (rotary, linear): (Vec<&Axis>, Vec<&Axis>) =
         carriers.iter().partition(|axis| axis.letter.is_rotary());
-    let centres: Vec<Point3<f64>> = rotary.iter().map(|axis| axis.point / unit).collect();
-    let (Some(innermost), Some(outermost)) = (centres.first(), centres.last()) else {
-        return f64::INFINITY;
-    };
+    // Linear axes carry the rotary ones, and X and Y keep the height.
     if linear.iter().any(|axis| axis.direction.z != 0.0) {
         return f64::INFINITY;
     }
-    let between: f64 = centres.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
-    let farthest = points.iter().map(|point| (point - outermost).norm()).fold(0.0, f64::max);
-    innermost.z + between + farthest
+    let circles = points.iter().map(|point| match rotary[..] {
+        [axis] => Circle::of(axis, point, unit).top(),
+        [inner, outer] => {
+            let Circle { centre, radius, axis } = Circle::of(outer, point, unit);
+            let carried = Circle::of(inner, &centre, unit);
+            // The point is at the centre and a vector v across the outer axis. Along the inner axis v is no longer than its projection, and
+            // across it the square of the radius grows by that of v and twice its product with what of the arm is across the outer axis.
+            let along = radius * axis.cross(&carried.axis).norm();
+            let arm = centre - carried.centre;
+            let across = (arm - axis * arm.dot(&axis)).norm();
+            let squared = carried.radius.powi(2) + 2.0 * across * radius + radius.powi(2);
+            Circle { radius: squared.sqrt(), ..carried }.top() + along * carried.axis.z.abs()
+        }
+        _ => f64::INFINITY,
+    });
+    circles.fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// The circle of a point about a rotary axis.
+struct Circle {
+    centre: Point3<f64>,
+    radius: f64,
+    /// The direction of the axis, a unit vector.
+    axis: Vector3<f64>,
+}
+
+impl Circle {
+    /// Returns the circle of a point. `unit` is in mm.
+    fn of(axis: &Axis, point: &Point3<f64>, unit: f64) -> Circle {
+        let origin = axis.point / unit;
+        let centre = origin + axis.direction * (point - origin).dot(&axis.direction);
+        Circle { centre, radius: (point - centre).norm(), axis: axis.direction }
+    }
+
+    /// Returns its greatest Z.
+    fn top(&self) -> f64 {
+        self.centre.z + self.radius * (1.0 - self.axis.z.powi(2)).max(0.0).sqrt()
+    }
 }

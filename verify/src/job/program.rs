@@ -364,7 +364,7 @@ impl Program {
                 return Err(JobError::NoPlace);
             }
             let mut tools = program.summary().tools.iter();
-            if let Some(tool) = tools.find(|tool| !program.is_length_known(tool.number)) {
+            if let Some(tool) = tools.find(|tool| program.tool_length(tool.number).is_none()) {
                 let line = tool.line;
                 return Err(match tool.number {
                     Some(number) => JobError::NoLength { number, line },

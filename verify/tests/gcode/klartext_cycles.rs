@@ -85,7 +85,7 @@ fn cycles_move_along_the_hole() {
         ("M3", low.replace("Q239=+", "Q239=-"), Spindle::LeftTap),
         ("M4", floating.to_owned(), Spindle::LeftTap),
         ("M3", format!("{floating}\nCYCL CALL"), Spindle::RightTap),
-        ("M5", floating.to_owned(), Spindle::Tapping),
+        ("M5", floating.to_owned(), Spindle::Stopped),
     ] {
         let tapped = steps(&format!("{at}{spindle}\n{cycle}\nCYCL CALL"));
         assert_eq!(tapped[tapped.len() - 1].spindle, hand, "{spindle} {cycle}");

@@ -309,7 +309,7 @@ fn drilling_cycles_move_to_their_levels() {
         ("CYCLE84(20,0,3,-10,,0,3,,-1.5,0,500,500)", Spindle::LeftTap),
         ("CYCLE84(20,0,3,-10,,0,3,-8,,0,500,500)", Spindle::LeftTap),
         ("CYCLE840(20,0,3,-10,,0,0,5,1,,1.5)", Spindle::LeftTap),
-        ("M5\nCYCLE840(20,0,3,-10,,0,0,5,1,,1.5)", Spindle::Tapping),
+        ("M5\nCYCLE840(20,0,3,-10,,0,0,5,1,,1.5)", Spindle::Stopped),
     ] {
         let tapped = steps(&format!("S500 M4\nG0 X5 Y6 Z50\n{cycle}\nM30\n"));
         assert_eq!(tapped[2].spindle, hand, "{cycle}");

@@ -248,8 +248,9 @@ fn rotary_axes_turn_under_an_empty_spindle() {
     for (machine, blocks, verdict, gaps) in [
         (TRUNNION, "G0 A-90. C90.\n", CLEAN, &[][..]),
         (TRUNNION, "G0 Z100.\nG0 A-90. C90.\n", CLEAN, &[]),
-        // The corner of the part is 40 mm beside the axis.
-        (TRUNNION, "G0 Z1.\nG0 A-90.\n", NONE, &["V0610 13 the part"]),
+        // The corner of the part is 40.1 mm beside the axis, and its middle 40 mm.
+        (TRUNNION, "G0 Z0.1\nG0 A-90.\n", NONE, &["V0610 13 the part"]),
+        (TRUNNION, "G0 Z1.\nG0 A-90.\n", CLEAN, &[]),
         (TRUNNION, "G0 Z1.\nG0 C90.\n", CLEAN, &[]),
         (TRUNNION, "G43.4 H0\nG0 Z100.\nG0 X20.\nG0 A-30.\nG0 A0.\nG49\n", NONE, &["V0610"]),
         (TRUNNION, "G43.4 H1\nG0 X20.\nG49\n", NONE, &["K0801 13"]),

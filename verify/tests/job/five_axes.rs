@@ -300,7 +300,7 @@ fn rapid_traverse_in_a_tilted_plane_is_any_dog_leg() {
 #[test]
 fn an_axis_that_is_not_stated_is_named() {
     let blocks =
-        "T1 M6\nS9000 M3\nG43 H1\nG0 X-6. Y0. Z20.\nG0 Z5.\nG0 X6.\nG0 A0. C0.\nG1 X4. Z1.";
+        "T1 M6\nS9000 M3\nG43 H1\nG0 X-6. Y0. Z20.\nG0 Z0.02\nG0 X6.\nG0 A0. C0.\nG1 X4. Z1.";
     let scene = Scene::new(blocks).placed().with("machine = \"A-C trunnion\"");
     scene.gives(LINUXCNC, NONE, &["V0402 6"]);
     let stated = Scene::new(&blocks.replace("Y0. Z20.", "Y0. Z20. A0. C0.")).placed();

@@ -302,22 +302,53 @@ fn a_tool_of_unknown_length_arrives_from_the_top() {
     };
     let fanuc = "G21 G90 G17 G94 G54\nT1 M6\nS1000 M3\nG43 H1\nG91 G28 Z0.\nG90\nG43 H1\nG0 X-6. Y0.\nG0 Z20.\nG1 Z0.2 F500.\nX6.\nG0 Z20.\n\
                  M30\n";
-    for (control, file, text) in [
+    // The length offset does not matter while Z rests at the top.
+    let late = fanuc
+        .replace("G43 H1\nG91", "G91")
+        .replace("G43 H1\nG0 X-6. Y0.\nG0", "G0 X-6. Y0.\nG43 H1");
+    let programs = [
         (HEIDENHAIN, "a.h", klartext("L Z+0 R0 FMAX M91")),
         (HEIDENHAIN, "a.h", klartext("L M140 MB MAX FMAX")),
         (FANUC, "a.nc", fanuc.to_owned()),
-    ] {
+        (HAAS, "a.nc", late),
+    ];
+    // The travel can be longer than up to the reference position.
+    for (limit, (control, file, text)) in
+        programs.iter().flat_map(|program| [("0", program), ("1", program)])
+    {
+        if limit == "1" && text.contains("M140") {
+            continue;
+        }
         let scene = || {
-            let mut scene = named(file, &text).placed();
+            let mut scene = named(file, text).placed();
             scene.job = scene.job.replace("length = 50\n", "");
-            scene
+            scene.on("3-axis", "limits = [-500, 0]", &format!("limits = [-500, {limit}]"))
         };
+        let control = *control;
         scene().gives(control, CLEAN, &[]);
         let below = scene().obstacle([-9.0, -2.0, 0.0], [-5.0, 2.0, 30.0]);
         below.gives(control, FINDINGS, &["V0101 the clamp"]);
         let high = scene().obstacle([40.0, 40.0, 0.0], [44.0, 44.0, 390.0]);
         high.gives(control, NONE, &["V0612 the clamp"]);
     }
+}
+
+/// A table that tilts at the top of Z swings into a tool of unknown length, which is at least as long as it is drawn.
+#[test]
+fn a_table_that_tilts_under_a_tool_of_unknown_length_is_judged() {
+    let text = "G21 G90 G17 G94 G54\nT1 M6\nS1000 M3\nG43 H1\nG0 A0. C0.\nX-6. Y0.\nZ20.\nG1 Z0.2 F500.\nX6.\nG0 Z20.\nG53 G0 Z0.\n\
+                G0 A90.\nM30\n";
+    for (y, verdict, gap) in [(460.0, NONE, Some("V0612 the clamp")), (400.0, CLEAN, None)] {
+        let mut scene = scene("a.nc", text, TRUNNION, "[0, 0, -440]");
+        scene.job = scene.job.replace("length = 80\n", "");
+        let scene = scene.obstacle([-5.0, y, 0.0], [5.0, y + 5.0, 5.0]);
+        scene.gives(LINUXCNC, verdict, gap.as_slice());
+    }
+    // Z alone rises from a tool change, whatever the table can meet: at the top it may tilt under a tool of a stated length.
+    let text = "G21 G90 G17 G94 G54\nT1 M6\nS1000 M3\nG91 G28 Z0.\nG90\nG0 A0. C0.\nX-6. Y0.\nG43 H1 Z20.\nG1 Z0.2 F500.\nX6.\n\
+                G0 Z20.\nM30\n";
+    let scene = named("a.nc", text).placed().with("machine = \"A-C trunnion\"");
+    scene.obstacle([-5.0, 460.0, 0.0], [5.0, 465.0, 5.0]).gives(LINUXCNC, CLEAN, &[]);
 }
 
 /// A head must not touch a disc that the table carries: the tool has to stay above that, too.
@@ -336,9 +367,15 @@ fn a_disc_below_the_head_is_in_the_way() {
              A0.\nX-6.\nZ20.\nG1 Z0.2 F500.\nX6.\nG0 Z20.\nG91 G28 Z0.\nG90\nM30\n"
         )
     };
-    for (z, verdict, gap) in [("65.", NONE, Some("V0302 8 the disc")), ("200.", CLEAN, None)] {
+    for (z, lowest, verdict, gap) in [
+        ("65.", 0.0, NONE, Some("V0302 8 the disc")),
+        ("200.", 0.0, CLEAN, None),
+        // An arm of the head hangs lower than the tool, which is 50 mm long.
+        ("200.", -150.0, CLEAN, None),
+        ("200.", -200.0, NONE, Some("V0302 8 the disc")),
+    ] {
         let scene = named("a.nc", &text(z)).placed().with("machine = \"A-C trunnion\"");
-        let scene = scene.body([-30.0, -30.0, 0.0], [30.0, 30.0, 200.0], Link::Axis(Letter::Z));
+        let scene = scene.body([160.0, -5.0, lowest], [170.0, 5.0, 200.0], Link::Axis(Letter::Z));
         scene.disc([0.0, 0.0, -500.0], Link::Axis(Letter::A)).gives(HAAS, verdict, gap.as_slice());
     }
     // Of two that the table carries, the level of the tool says nothing.
@@ -404,6 +441,8 @@ fn rapid_traverse_of_rotary_axes_is_judged_by_its_level() {
     turned("30").gives(HAAS, CLEAN, &[]);
     let high = turned("30").obstacle([30.0, 290.0, -20.0], [40.0, 299.0, -10.0]);
     high.gives(HAAS, NONE, &["V0302 9 the clamp"]);
+    // A shaft along the axis turns in its place.
+    scene().obstacle([-300.0, -3.0, -12.0], [300.0, 3.0, -10.0]).gives(HAAS, CLEAN, &[]);
     // A bar on the table reaches higher while it turns.
     scene().obstacle([30.0, 90.0, -20.0], [40.0, 99.0, -10.0]).gives(HAAS, CLEAN, &[]);
     let high = scene().obstacle([30.0, 290.0, -20.0], [40.0, 299.0, -10.0]);

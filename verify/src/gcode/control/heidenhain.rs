@@ -1,7 +1,7 @@
 //! Motions and changes of coordinates that Heidenhain Klartext has, and ISO 6983 has no words for.
 
 use super::motion::{ArcWords, path};
-use super::{AXES, Control, Motion, Thread};
+use super::{AXES, Control, Motion, TapTurn};
 use crate::gcode::block::Block;
 use crate::gcode::error::{CompensationFault, combination, missing};
 use crate::gcode::state::{LengthOffset, Position, Rotation, Tcp, WorkOffset};
@@ -195,8 +195,13 @@ impl Control {
     }
 
     /// Taps a thread from one level to another and back, in millimetres.
-    pub(in crate::gcode) fn tap(&mut self, [top, bottom]: [f64; 2], thread: Option<Thread>) {
-        let before = self.modal.motion.replace(Motion::Tap(thread));
+    pub(in crate::gcode) fn tap(&mut self, [top, bottom]: [f64; 2], turn: TapTurn) {
+        let motion = self.tapping_motion(turn);
+        let thread = match motion {
+            Some(Motion::Tap(thread)) => thread,
+            _ => None,
+        };
+        let before = std::mem::replace(&mut self.modal.motion, motion);
         self.move_to_level(bottom, false);
         self.move_to_level(top, false);
         self.modal.motion = before;

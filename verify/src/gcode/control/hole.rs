@@ -1,6 +1,6 @@
 //! Holes of Sinumerik's drilling cycles, in absolute levels along Z.
 
-use super::{Control, Motion, Spindle, Thread};
+use super::{Control, Spindle, TapTurn};
 use crate::gcode::block::{Block, Distance, Number};
 use crate::gcode::error::combination;
 use crate::gcode::state::Tcp;
@@ -25,8 +25,7 @@ pub(in crate::gcode) struct Hole {
 /// What a tapping cycle does with the spindle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::gcode) struct Tapping {
-    /// The thread, if it is not that to which the spindle turns before.
-    pub(in crate::gcode) thread: Option<Thread>,
+    pub(in crate::gcode) turn: TapTurn,
     /// The M word that turns the spindle after it, 3, 4 or 5, or another number.
     pub(in crate::gcode) after: u32,
 }
@@ -70,9 +69,8 @@ impl Control {
             self.move_along(axis, true, safe);
         }
         let motion = self.modal.motion;
-        if let Some(Tapping { thread, .. }) = hole.tapping {
-            let thread = thread.or_else(|| self.thread_of_spindle());
-            self.modal.motion = Some(Motion::Tap(thread));
+        if let Some(Tapping { turn, .. }) = hole.tapping {
+            self.modal.motion = self.tapping_motion(turn);
         }
         self.move_along(axis, false, depth);
         if hole.returns_at_feed {

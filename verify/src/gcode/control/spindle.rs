@@ -1,6 +1,6 @@
 //! The spindle: how it turns during a motion.
 
-use super::Control;
+use super::{Control, Motion};
 use crate::gcode::block::Block;
 use crate::gcode::rules::{Choice, Rule};
 
@@ -17,7 +17,7 @@ pub enum Spindle {
     Clockwise,
     /// It turns counter-clockwise (M4).
     CounterClockwise,
-    /// A tapping cycle turns it, which states no hand of its thread, after no M3 or M4.
+    /// A tapping cycle turns it, which states no pitch.
     Tapping,
     /// A cycle that taps a right-hand thread turns it.
     RightTap,
@@ -43,6 +43,15 @@ impl Thread {
             _ => None,
         }
     }
+}
+
+/// The turn of the spindle in a tapping cycle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::gcode) enum TapTurn {
+    /// The cycle turns it into a thread, if it states its pitch.
+    OfCycle(Option<Thread>),
+    /// It turns as before the cycle, which has a floating holder.
+    OfSpindle,
 }
 
 /// The words of the program about the spindle.
@@ -124,7 +133,7 @@ impl Control {
     }
 
     /// Returns the thread that the spindle taps as it turns, or as it did before the same cycle.
-    pub(in crate::gcode) fn thread_of_spindle(&mut self) -> Option<Thread> {
+    fn thread_of_spindle(&mut self) -> Option<Thread> {
         match self.spindle(false) {
             Spindle::Clockwise => Some(Thread::Right),
             Spindle::CounterClockwise => Some(Thread::Left),
@@ -133,8 +142,19 @@ impl Control {
         }
     }
 
+    /// Returns the motion of a stroke of a tap. A cycle that does not turn the spindle feeds where that does not tap.
+    pub(super) fn tapping_motion(&mut self, turn: TapTurn) -> Option<Motion> {
+        match turn {
+            TapTurn::OfCycle(thread) => Some(Motion::Tap(thread)),
+            TapTurn::OfSpindle => match self.thread_of_spindle() {
+                None => Some(Motion::Feed),
+                thread => Some(Motion::Tap(thread)),
+            },
+        }
+    }
+
     /// Notes the end of a tapping cycle, which leaves the spindle standing or turning.
-    pub(in crate::gcode) fn end_tapping(&mut self, thread: Option<Thread>) {
+    pub(super) fn end_tapping(&mut self, thread: Option<Thread>) {
         self.spindle.turn = Spindle::AfterTapping;
         self.spindle.tapping = thread.filter(|_| !self.spindle.rigid);
     }

@@ -13,7 +13,7 @@ use super::block::{Coordinate, Words};
 use super::expression::{Parameter, value};
 use super::line::Cursor;
 use super::words::{Entry, Treatment, find_cycle};
-use crate::gcode::control::{Control, Thread};
+use crate::gcode::control::{Control, TapTurn, Thread};
 use crate::gcode::error::{combination, missing, not_read};
 use crate::gcode::note::NoteKind;
 use crate::gcode::{GcodeFault, MAX_CYCLE_STEPS};
@@ -415,9 +415,11 @@ impl Program<'_> {
         match cycle.bore {
             Some(bore) => mill(bore, [top, bottom], control)?,
             None if is_tap => {
-                // Cycle 206 taps as the spindle turns.
-                let thread = cycle.thread.or_else(|| control.thread_of_spindle());
-                control.tap([top, bottom], thread);
+                let turn = match cycle.number {
+                    206 => TapTurn::OfSpindle,
+                    _ => TapTurn::OfCycle(cycle.thread),
+                };
+                control.tap([top, bottom], turn);
             }
             None => control.move_to_level(bottom, false),
         }

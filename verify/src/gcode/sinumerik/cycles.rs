@@ -7,7 +7,7 @@
 use super::expression::{Value, expression};
 use super::text::Cursor;
 use super::variables::Variables;
-use crate::gcode::control::{Hole, Retract, Swivel, Tapping, Thread};
+use crate::gcode::control::{Hole, Retract, Swivel, TapTurn, Tapping, Thread};
 use crate::gcode::error::{combination, missing, not_read};
 use crate::gcode::state::about;
 use crate::gcode::{Alignment, ExpressionFault, GcodeFault};
@@ -162,9 +162,11 @@ pub(super) fn hole(
             let [size, pitch] = pitch.map(|index| given.number_or_zero(index));
             let pitch = Some(size?).filter(|size| *size != 0.0).unwrap_or(pitch?);
             hole.has_feed = pitch != 0.0;
-            // CYCLE840 taps as the spindle turns.
-            let thread = Thread::of_pitch(pitch).filter(|_| *cycle == "CYCLE84");
-            hole.tapping = Some(Tapping { thread, after });
+            let turn = match *cycle {
+                "CYCLE84" => TapTurn::OfCycle(Thread::of_pitch(pitch)),
+                _ => TapTurn::OfSpindle,
+            };
+            hole.tapping = Some(Tapping { turn, after });
             hole.returns_at_feed = true;
         }
         "CYCLE85" => {

@@ -27,7 +27,9 @@ impl Resolver<'_> {
         if !(starts_at_level || ends_at_level && ends_blind || states_z || goes_aside) {
             return None;
         }
-        let is_at_top = ends.iter().all(|end| end[2].is_some_and(|z| self.stands_at_top(z)));
+        let is_high =
+            |is_there: &dyn Fn(f64) -> bool| ends.iter().all(|end| end[2].is_some_and(is_there));
+        let is_at_top = is_high(&|z| self.stands_high(z));
         // From wherever the operator has left it, Z alone goes to the top of its travel or to its reference position, at which the others
         // are free.
         let is_retract = step.commanded == Z_ALONE && !starts_at_level && self.at_top.is_some();
@@ -38,9 +40,9 @@ impl Resolver<'_> {
         // A part that the table tilts by unknown angles is as high as it can swing.
         let tilts = |side: Side| self.tilting(&turns).any(|axis| axis.side == side);
         let is_of_head = tilts(Side::Tool) && !tilts(Side::Table);
-        if is_at_top && self.tilting(&turns).next().is_some()
-            || (is_retract || is_aside) && is_of_head
-        {
+        // A table can tilt at the top of the travel, and swing into a tool at a lower reference position.
+        let is_free = is_high(&|z| self.is_top(z)) && self.tilting(&turns).next().is_some();
+        if is_retract || is_free || (is_at_top || is_aside) && is_of_head {
             return None;
         }
         let known = ends.iter().filter(|end| end[2].is_some());
@@ -55,7 +57,7 @@ impl Resolver<'_> {
 
     /// Returns the level of the gauge point during a step that moves axes aside at the top of Z's travel, or at a reference position, or
     /// that leads to one below the top.
-    pub(in crate::check) fn top_way(&mut self, step: &Step) -> Option<BlindWay> {
+    pub(in crate::check) fn top_way(&mut self, step: &Step, has_length: bool) -> Option<BlindWay> {
         let height = self.at_top.filter(|height| match step.commanded[2] {
             // From the tip of a tool of unknown length it may lead down.
             true => !self.is_top(*height),
@@ -67,15 +69,16 @@ impl Resolver<'_> {
         // A machine without a chain to the gauge point has refused every motion.
         let chain = self.chain(0.0).ok()?.without_linear_limits();
         let turns = |k: usize| step.commanded[k] || self.joints[k].is_none() && self.has_axis(k);
-        // What swings with an unknown angle has no level; at the top of Z that is said.
-        if self.tilting(&turns).next().is_some() {
+        // A head that swings by an unknown angle has no level. Below the top a table may tilt, which is known to be out of the way of a tool
+        // of a stated length alone.
+        if self.tilting(&turns).any(|axis| axis.side == Side::Tool || has_length) {
             return None;
         }
         let mut joints = self.joints.map(Option::unwrap_or_default);
         joints[2] = height;
         let levels = self.levels_while(&chain, &joints, &turns);
         // The reference position can be lower than the end of the travel, and counts as the top, too.
-        Some(BlindWay { levels, is_at_top: height >= self.reference_height() })
+        Some(BlindWay { levels, is_at_top: self.is_high(height) })
     }
 
     /// Returns the level of a way between two joint positions on which Z is nowhere below `lowest`.
@@ -86,7 +89,7 @@ impl Resolver<'_> {
             joints[2] = lowest;
             self.levels_while(&chain, &joints, &|k| start[k] != end[k])
         });
-        BlindWay { levels: Level::lower(&one, &other), is_at_top: self.stands_at_top(lowest) }
+        BlindWay { levels: Level::lower(&one, &other), is_at_top: self.stands_high(lowest) }
     }
 
     /// Returns the known motions of a step without a tool, with the levels of the spindle's gauge point.

@@ -41,10 +41,19 @@ impl Resolver<'_> {
     pub(super) fn frame(&mut self, step: &Step) -> Result<Located<Frame>, StepFault> {
         let state = &*step.state;
         let is_tip = state.turns_with_workpiece();
-        let Lengths { length, offset, is_known } = match self.lengths(state)? {
-            Located::Known(lengths) => lengths,
-            Located::Unknown(cause) => return Ok(Located::Unknown(cause)),
-        };
+        // Z rests, so that its offset does not matter.
+        let rests_high = !is_tip
+            && !step.commanded[2]
+            && self.at_top.is_some()
+            && self.joints[2].is_some_and(|z| self.stands_high(z));
+        let Lengths { length, offset, is_known } =
+            match self.lengths(state)? {
+                Located::Known(lengths) => lengths,
+                Located::Unknown(
+                    UnknownCause::NoOffset { .. } | UnknownCause::OtherOffset { .. },
+                ) if rests_high => Lengths { length: 0.0, offset: 0.0, is_known: false },
+                Located::Unknown(cause) => return Ok(Located::Unknown(cause)),
+            };
         let Some(shift) = self.known_in_machine(&state.shift) else {
             return Ok(Located::Unknown(UnknownCause::Shift));
         };

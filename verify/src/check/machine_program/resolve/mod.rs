@@ -249,7 +249,7 @@ impl<'a> Resolver<'a> {
             // Positions of a part that turns move Z, those of the axes do not. In a tilted plane no length offset is read.
             let is_upright = !state.turns_with_workpiece()
                 || matches!(step.path, StepPath::Machine(_) | StepPath::Align);
-            let is_top = self.stands_at_top(z) && is_upright;
+            let is_top = self.stands_high(z) && is_upright;
             if is_top && !step.commanded[2] {
                 return;
             }
@@ -289,8 +289,7 @@ impl<'a> Resolver<'a> {
                 }
             }
             // At the reference position of Z other axes are free, too.
-            let is_high = |z: &f64| self.is_top(*z) || self.setup.home[2] == Some(*z);
-            let height = self.joints[2].filter(|z| step.commanded[2] && is_high(z));
+            let height = self.joints[2].filter(|z| step.commanded[2] && self.is_high(*z));
             self.at_top = height.or(self.at_top);
             self.leave_plane(step, &before);
             return Ok(Resolved::ToolChange);
@@ -303,8 +302,13 @@ impl<'a> Resolver<'a> {
         let frame = match self.frame(step)? {
             Located::Known(frame) => frame,
             Located::Unknown(cause) => {
+                let (joints, known_cause) = (self.joints, self.cause);
                 let lost = self.lose_linear(step, cause);
-                self.rise_to_top(step);
+                // The axis goes to its own place, whatever the length is, and the others rest.
+                if step.commanded == Z_ALONE && self.end_at_top(step).is_some() {
+                    (self.joints, self.cause) = (joints, known_cause);
+                    self.rise_to_top(step);
+                }
                 // The way home of machine coordinates is the same with and without the length offset: of Z alone, and of others at its top.
                 let is_free = self.is_way_home_free(step);
                 return Ok(match cause {
@@ -391,7 +395,7 @@ impl<'a> Resolver<'a> {
             // A place of the axis is none of a tip, but straight up at the top.
             if self.height != Height::OfAxis {
                 let is_free = step.commanded == Z_ALONE;
-                ends[1][2] = ends[1][2].filter(|z| is_free && self.is_top(*z));
+                ends[1][2] = ends[1][2].filter(|z| is_free && self.is_high(*z));
             }
             self.height = Height::OfAxis;
         }
@@ -432,7 +436,7 @@ impl<'a> Resolver<'a> {
         if step.commanded != Z_ALONE {
             self.way_home = Some(BlindWay {
                 levels: self.levels(&chain, &joints),
-                is_at_top: self.stands_at_top(joints[2]),
+                is_at_top: self.stands_high(joints[2]),
             });
             return Ok(Resolved::Unknown(UnknownCause::Home));
         }
@@ -478,14 +482,19 @@ impl<'a> Resolver<'a> {
         self.is_placed && z >= self.setup.top.unwrap_or_default()
     }
 
-    /// Returns whether Z is there at a joint value, which is not that of the tip of a tool.
-    fn stands_at_top(&self, z: f64) -> bool {
-        self.height == Height::OfAxis && self.is_top(z)
+    /// Returns whether Z is there or at its reference position, where tools are out of the way.
+    fn is_high(&self, z: f64) -> bool {
+        self.is_placed && z >= self.reference_height()
     }
 
-    /// Returns the place of Z's axis at the end of a step that leads to the top of its travel, whatever its tool is.
+    /// Returns whether Z is as high at a joint value, which is not that of the tip of a tool.
+    fn stands_high(&self, z: f64) -> bool {
+        self.height == Height::OfAxis && self.is_high(z)
+    }
+
+    /// Returns the place of Z's axis at the end of a step that leads to the top of its travel or its reference position, whatever its tool is.
     fn end_at_top(&self, step: &Step) -> Option<f64> {
-        step.machine_height.filter(|z| step.is_homeward && self.is_top(*z))
+        step.machine_height.filter(|z| step.is_homeward && self.is_high(*z))
     }
 
     /// Notes the place of Z's axis after a step that leads to the top of its travel.
