@@ -251,10 +251,15 @@ impl Lane for Enclosure {
     fn max(a: Enclosure, b: Enclosure) -> Enclosure {
         -Enclosure::smaller(-a, -b)
     }
-    fn pick(mask: Ternary, region: Enclosure, before: Enclosure) -> Enclosure {
-        // An index is a constant of the generated code.
-        let regions = bit(region.value.low as usize);
-        Lane::select(mask, Enclosure { regions, ..region }, before)
+    fn pick(mask: Ternary, region: Enclosure, mut before: Enclosure) -> Enclosure {
+        // An index is a constant of the generated code, and only the bits of those that are possible are asked for.
+        let bits = bit(region.value.low as usize);
+        before.regions = match (mask.yes, mask.no) {
+            (true, true) => before.regions | bits,
+            (true, false) => bits,
+            (false, _) => before.regions,
+        };
+        before
     }
 }
 
@@ -459,14 +464,23 @@ impl BitAnd for Ternary {
 
 impl BitOr for Ternary {
     type Output = Ternary;
-    fn bitor(self, other: Ternary) -> Ternary {
-        !(!self & !other)
+    fn bitor(mut self, other: Ternary) -> Ternary {
+        self |= other;
+        self
     }
 }
 
 impl BitOrAssign for Ternary {
     fn bitor_assign(&mut self, other: Ternary) {
-        *self = *self | other;
+        // If both may hold, it is not known which one does.
+        match (self.yes, other.yes) {
+            (true, true) => self.gaps[0] = None,
+            (false, true) => self.gaps[0] = other.gaps[0],
+            _ => {}
+        }
+        self.gaps[1] = self.gaps[1].or(other.gaps[1]);
+        self.yes |= other.yes;
+        self.no &= other.no;
     }
 }
 

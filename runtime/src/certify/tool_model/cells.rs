@@ -76,6 +76,12 @@ impl CellTree {
         self.divide(outline, upper);
     }
 
+    /// Returns whether there is more than one cell.
+    #[inline]
+    pub(crate) fn is_divided(&self) -> bool {
+        self.nodes.len() > 1
+    }
+
     /// Returns the candidates of a point; `None` for a point outside the rectangle about the profile.
     #[inline]
     pub(crate) fn candidates(&self, p: MeridianPoint) -> Option<&[usize]> {

@@ -410,6 +410,7 @@ impl Feature {
 
     /// Returns the signed distance of a triangle beyond the line that touches the feature on the side of `viewpoint`,
     /// normal to the direction of `viewpoint` from its foot; 0 if `viewpoint` is on the feature.
+    #[inline]
     fn separation(&self, triangle: &Triangle, viewpoint: MeridianPoint) -> f64 {
         let vector = minus(viewpoint, self.foot(viewpoint));
         let length = norm(vector);
