@@ -509,8 +509,7 @@ impl MachineProgram {
                 summary.bare_blocks.insert(step.block());
             }
             let arrives = matches!(resolved, Resolved::Arrival(..));
-            let has_length =
-                is_known || matches!(step.state.length, LengthOffset::On { length: Some(_), .. });
+            let has_length = execution.resolver.has_length(&step.state);
             // What is followed with its length is checked as it is.
             let is_followed = matches!(
                 resolved,

@@ -6,8 +6,8 @@
 use super::{Body, BodyFrame, BodyRole, Job, JobGap, JobStock, JobTool, RevolvedBody, STOCK};
 use crate::check::CheckGap;
 use crate::gcode::BlockLine;
-use crate::machine::{Axis, Link, Machine, Setup, Side};
-use crate::{BlindWay, MachineProgram, MachineSummary, ToolSelection, TopWay};
+use crate::machine::{Axis, Letter, Link, Machine, Setup, Side};
+use crate::{BlindWay, Level, MachineProgram, MachineSummary, ToolSelection, TopWay};
 use nalgebra::{Point3, Vector3};
 use std::f64::consts::{PI, TAU};
 use touchoff::Pose;
@@ -30,8 +30,16 @@ struct Obstacle<'a> {
     hull: Hull,
     /// Set for a fixture, which is in the way of a tool at the top of Z's travel, too.
     is_fixture: bool,
-    /// The distance to keep from it, in the part's unit.
-    margin: f64,
+    met: Vec<Met>,
+}
+
+/// What of the tool's side can meet an obstacle, in the part's unit.
+enum Met {
+    /// The tool, or a body that Z carries with it: by how much its level has to be higher, which is the distance to keep and that by which
+    /// a body hangs lower than the tip.
+    Carried { margin: f64 },
+    /// A body of the head that Z does not carry: its lowest Z of the machine, less the distance to keep.
+    Still { ceiling: f64 },
 }
 
 /// Points around something, in a frame.
@@ -70,6 +78,17 @@ impl Setting<'_> {
                     |point: &Point3<f64>| self.part.tip() + self.part.rotation() * point.coords;
                 points.iter().map(place).collect()
             }
+        }
+    }
+
+    /// Returns the height of Z of the machine as the first of some levels counts it: that of the base, or of the part if nothing moves it.
+    fn base_height(&self, levels: &[Level], z: f64) -> f64 {
+        match levels {
+            [part] => {
+                let points = self.on_part(&Hull::Machine(vec![Point3::new(0.0, 0.0, z)]));
+                top(&points, &part.up)
+            }
+            _ => z,
         }
     }
 }
@@ -149,18 +168,25 @@ impl Job<'_> {
             BodyRole::Part => part_margin,
             BodyRole::Fixture { margin } | BodyRole::Machine { margin, .. } => margin,
         };
-        let hang = |lowest: f64| (-lowest - below).max(0.0);
+        // A body of the tool's side by its lowest Z of the machine while all axes are at 0.
+        let met = |link: Link, lowest: f64, distance: f64| match machine
+            .is_none_or(|machine| is_carried(machine, link))
+        {
+            true => Met::Carried { margin: distance + (-lowest - below).max(0.0) },
+            false => Met::Still { ceiling: lowest - distance },
+        };
         let moves_with_tool = |link: Link| machine.is_some_and(|machine| is_of_tool(machine, link));
         let bodies = self.bodies.iter().enumerate().filter_map(|(index, body)| {
             let corners = corners(body.bvh.bounds());
-            let met = self.revolved.iter().filter(|moving| moves_with_tool(moving.link));
-            let met = met.filter(|moving| moving.against.contains(&index));
+            let moving = self.revolved.iter().filter(|moving| moves_with_tool(moving.link));
+            let moving = moving.filter(|moving| moving.against.contains(&index));
             // Of a pair the larger distance holds.
-            let margins = met.map(|moving| {
-                let lowest = self.hull(moving).iter().map(|point| point.z).reduce(f64::min);
-                moving.margin.max(margin_of(body)) + lowest.map_or(0.0, hang)
+            let solids = moving.map(|moving| {
+                let lowest =
+                    self.hull(moving).iter().map(|point| point.z).fold(f64::INFINITY, f64::min);
+                met(moving.link, lowest, moving.margin.max(margin_of(body)))
             });
-            let margins = margins.chain(body.meets_tools().then(|| margin_of(body)));
+            let tool = body.meets_tools().then(|| Met::Carried { margin: margin_of(body) });
             Some(Obstacle {
                 name: &body.name,
                 link: machine.map(|machine| body.frame.link(machine)),
@@ -169,7 +195,7 @@ impl Job<'_> {
                     BodyFrame::Part | BodyFrame::Table(_) => Hull::Part(corners),
                 },
                 is_fixture: matches!(body.role, BodyRole::Fixture { .. }),
-                margin: margins.reduce(f64::max)?,
+                met: some(solids.chain(tool))?,
             })
         });
         // No tool is checked against a solid of revolution: the meshes that move with the tool are.
@@ -177,15 +203,16 @@ impl Job<'_> {
         let revolved = revolved.filter_map(|moving| {
             let machine = machine?;
             let against = moving.against.iter().map(|index| &self.bodies[*index]);
-            let met = against.filter(|body| moves_with_tool(body.frame.link(machine)));
-            let margins =
-                met.map(|body| moving.margin.max(margin_of(body)) + hang(body.bvh.bounds()[0].z));
+            let meshes = against.map(|body| (body, body.frame.link(machine)));
+            let meshes = meshes.filter(|(_, link)| moves_with_tool(*link)).map(|(body, link)| {
+                met(link, body.bvh.bounds()[0].z, moving.margin.max(margin_of(body)))
+            });
             Some(Obstacle {
                 name: &moving.name,
                 link: Some(moving.link),
                 hull: Hull::Machine(self.hull(moving)),
                 is_fixture: false,
-                margin: margins.reduce(f64::max)?,
+                met: some(meshes)?,
             })
         });
         let stock = self.stock.as_ref().map(|stock| Obstacle {
@@ -193,7 +220,7 @@ impl Job<'_> {
             link: machine.map(|machine| machine.last_link(Side::Table)),
             hull: Hull::Part(corners(JobStock::bounds(stock))),
             is_fixture: false,
-            margin: 0.0,
+            met: vec![Met::Carried { margin: 0.0 }],
         });
         bodies.chain(revolved).chain(stock).collect()
     }
@@ -239,20 +266,38 @@ impl Job<'_> {
         Some(Setting { machine, part, is_placed: origin.is_some() })
     }
 
-    /// Returns the height of an obstacle, with its margin, above a way; `None` for one that is not in it. What stands still on the machine
-    /// is out of the way at the top of Z's travel, and what moves with the tool anywhere.
+    /// Returns the height of an obstacle above a way, with what has to be between; `None` for one that is not in it. What stands still on
+    /// the machine is out of the way at the top of Z's travel, and what moves with the tool anywhere.
     fn height_above(
         &self,
         obstacle: &Obstacle<'_>,
         way: &BlindWay,
         setting: Option<&Setting<'_>>,
     ) -> Option<f64> {
-        let Obstacle { hull, margin, is_fixture, .. } = obstacle;
+        let heights = obstacle.met.iter().filter_map(|met| match met {
+            Met::Carried { margin } => Some(self.height_over(obstacle, way, setting)? + margin),
+            Met::Still { ceiling } => {
+                let base = setting?.base_height(&way.levels, *ceiling) * self.unit().millimetres();
+                let way = BlindWay { levels: at_height(&way.levels, base), is_at_top: false };
+                self.height_over(obstacle, &way, setting)
+            }
+        });
+        heights.reduce(f64::max)
+    }
+
+    /// Returns the height of an obstacle over the levels of a way.
+    fn height_over(
+        &self,
+        obstacle: &Obstacle<'_>,
+        way: &BlindWay,
+        setting: Option<&Setting<'_>>,
+    ) -> Option<f64> {
+        let Obstacle { hull, is_fixture, .. } = obstacle;
         let (part, links) = way.levels.split_last()?;
         let unit = self.unit().millimetres();
         let (Some(setting), Some(link)) = (setting, obstacle.link) else {
             let Hull::Part(points) = hull else { return Some(f64::INFINITY) };
-            return Some(top(points, &part.up) - part.height / unit + margin);
+            return Some(top(points, &part.up) - part.height / unit);
         };
         let machine = setting.machine;
         let is_at_part = link == machine.last_link(Side::Table);
@@ -278,14 +323,14 @@ impl Job<'_> {
                 true => setting.on_machine(hull),
                 false => setting.on_part(hull),
             };
-            return Some(top(&points, &level.up) - level.height / unit + margin);
+            return Some(top(&points, &level.up) - level.height / unit);
         }
         // An obstacle that is tilted by unknown angles of its carriers is as high as it can swing.
         let Some(base) = way.levels.first().filter(|_| setting.is_placed) else {
             return Some(f64::INFINITY);
         };
         let points = setting.on_machine(hull);
-        Some(swing(&carriers[..index], &points, unit) - base.height / unit + margin)
+        Some(swing(&carriers[..index], &points, unit) - base.height / unit)
     }
 }
 
@@ -301,6 +346,34 @@ fn is_of_tool(machine: &Machine, link: Link) -> bool {
         Link::Base => machine.last_link(Side::Tool) == Link::Base,
         Link::Axis(letter) => machine.axis(letter).is_some_and(|axis| axis.side == Side::Tool),
     }
+}
+
+/// Returns whether a link of the tool's side keeps its height to the spindle: Z of the head carries it, or the head has none.
+fn is_carried(machine: &Machine, link: Link) -> bool {
+    // The axes are in order from the base.
+    let head = machine.axes().iter().filter(|axis| axis.side == Side::Tool);
+    let place = |letter: Letter| head.clone().position(|axis| axis.letter == letter);
+    let own = match link {
+        Link::Base => None,
+        Link::Axis(letter) => place(letter),
+    };
+    place(Letter::Z).is_none_or(|z| own.is_some_and(|own| own >= z))
+}
+
+/// Returns the levels of something at a height of the first of them, in mm, in place of those of the tip.
+fn at_height(levels: &[Level], height: f64) -> Vec<Level> {
+    let Some((base, links)) = levels.split_first() else { return Vec::new() };
+    let links = links.iter().map(|level| {
+        let rise = level.height - base.height;
+        Level { height: if rise.is_finite() { height + rise } else { f64::NEG_INFINITY }, ..*level }
+    });
+    std::iter::once(Level { height, ..*base }).chain(links).collect()
+}
+
+/// Returns the items if there are any.
+fn some<T>(items: impl Iterator<Item = T>) -> Option<Vec<T>> {
+    let items: Vec<T> = items.collect();
+    (!items.is_empty()).then_some(items)
 }
 
 /// Returns the corners of a box.

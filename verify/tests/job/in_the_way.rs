@@ -452,3 +452,83 @@ fn rapid_traverse_of_rotary_axes_is_judged_by_its_level() {
     tall.job += stock;
     tall.gives(HAAS, NONE, &["V0302 9 the stock"]);
 }
+
+/// At the top of Z the length offset of the tool before does not matter: the tool is there by its own length.
+#[test]
+fn at_the_top_a_tool_has_its_own_length_under_the_offset_of_another() {
+    let text = "G21 G17 G90 G94 G54\nT2 M6\nG43 H2\nS1000 M3\nG53 G0 Z0.\nG0 X90. Y0.\nX80.\nT1 M6\nS1000 M3\nG0 X90. Y0.\nX-6.\nG43 H1 Z50.\n\
+                G1 Z0.2 F500.\nX6.\nG53 G0 Z0.\nM30\n";
+    for (lengths, verdict, gaps) in [
+        // The tip of the first passes at Z60 of the part, the clamp is 65 high.
+        (["340", ""], FINDINGS, &["V0101 11 the clamp"][..]),
+        (["340", "100"], FINDINGS, &["V0101 11 the clamp"]),
+        (["300", ""], CLEAN, &[]),
+        // The offset that is in force is known, and not that of the tool, which is drawn shorter.
+        (["", "330"], CLEAN, &[]),
+        (["", ""], CLEAN, &[]),
+    ] {
+        let [one, two] = lengths.map(|length| {
+            if length.is_empty() { String::new() } else { format!("length = {length}\n") }
+        });
+        let mut scene = named("a.nc", text).with("machine = \"3-axis\"");
+        scene.job = scene.job.replace("LENGTH\n", &one);
+        scene.job +=
+            &format!("[tool.2]\ntool = \"D2Ball\"\n{two}[work_offsets]\nG54 = [0, 0, -400]\n");
+        let scene = scene.obstacle([40.0, -5.0, 0.0], [50.0, 5.0, 65.0]);
+        scene.gives(HAAS, verdict, gaps);
+    }
+}
+
+/// A table that turns while Z comes down from wherever it is can swing into the tool.
+#[test]
+fn a_table_that_turns_while_z_comes_from_an_unknown_height_is_judged() {
+    let text = |way: &str| {
+        format!(
+            "G21 G17 G90 G94 G54\nT1 M6\nS1000 M3\nG0 X-6. Y0. A0.\n{way}\nG0 Z340.\nG0 A0.\nZ20.\nG1 Z0.2 F500.\nX6.\nG0 Z20.\nM30\n"
+        )
+    };
+    for (way, verdict, gap) in
+        [("G43 H1 Z60. A90.", NONE, Some("V0607 5 the clamp")), ("G43 H1 Z150.\nA90.", CLEAN, None)]
+    {
+        let scene = named("a.nc", &text(way)).placed();
+        let scene = scene.on("4-axis", "name = ", "tool_change = \"stays\"\nname = ");
+        let scene = scene.obstacle([30.0, 290.0, -20.0], [40.0, 299.0, -10.0]);
+        scene.gives(HAAS, verdict, gap.as_slice());
+    }
+}
+
+/// A beam that Z does not carry stays where it is, however high the tool is.
+#[test]
+fn a_beam_stays_while_the_tool_rises() {
+    let machine = "name = \"router\"\ntool_change = \"stays\"\naxis = [\n{ letter = \"Y\", kind = \"linear\", carries = \"tool\" },\n\
+                   { letter = \"X\", kind = \"linear\", carries = \"tool\" },\n\
+                   { letter = \"Z\", kind = \"linear\", carries = \"tool\", limits = [0, 500] },\n]";
+    let text = "G21 G90 G17 G94 G54\nT1 M6\nS1000 M3\nG0 G43 H1 Z60.\nG0 X-6. Y0.\nG1 Z0.2 F500.\nX6.\nG0 Z60.\nM30\n";
+    // Z is 100 in the first position, and 240 at Z60.
+    for (beam, link, top, verdict, gap) in [
+        (130.0, Letter::Y, 140.0, NONE, Some("V0607 4 the clamp")),
+        (130.0, Letter::Y, 120.0, CLEAN, None),
+        (130.0, Letter::Z, 140.0, CLEAN, None),
+    ] {
+        let scene = scene("a.nc", text, machine, "[0, 0, 100]");
+        let scene = scene.body([-60.0, -400.0, 0.0], [60.0, -300.0, top], Link::Base);
+        scene.disc([0.0, 0.0, beam], Link::Axis(link)).gives(LINUXCNC, verdict, gap.as_slice());
+    }
+}
+
+/// Under tool centre point control Z of the tip is known before the axes are, where an angle about Z is not.
+#[test]
+fn a_way_of_the_tip_about_an_unknown_angle_is_open() {
+    for (start, verdict, gap) in
+        [("A0", NONE, Some("V0607 8 the clamp")), ("A0 C0 X-6 Y0 Z200", CLEAN, None)]
+    {
+        let text = format!(
+            "G21 G17 G90 G94 G54\nT1 M6\nS1000 M3\nG43 H1\nG0 {start}\nM428\nG0 Z20\nG0 X-6 Y0\nG0 Z200\nG0 C0\nG0 Z20\n\
+             G1 Z0.2 F500\nX6\nG0 Z200\nM429\nM2\n"
+        );
+        let machine = TRUNNION.replace("{ Z = 0 }", "\"stays\"");
+        let scene = scene("a.nc", &text, &machine, "[0, 0, -440]");
+        let scene = scene.obstacle([40.0, 40.0, 0.0], [50.0, 50.0, 150.0]);
+        scene.gives(LINUXCNC, verdict, gap.as_slice());
+    }
+}

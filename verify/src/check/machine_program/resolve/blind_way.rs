@@ -14,10 +14,12 @@ impl Resolver<'_> {
         let [starts_blind, ends_blind] =
             ends.each_ref().map(|end| [0, 1, 3, 4, 5].into_iter().any(|k| is_unknown(k, end)));
         let [starts_at_level, ends_at_level] = ends.map(|end| end[2].is_some());
-        // A way from an unknown height, but aside between known places, is none that the operator moves.
+        // A way from an unknown height, but aside or about an axis between known places, is none that the operator moves.
         let goes_aside = !starts_at_level
             && ends_at_level
-            && [0, 1].into_iter().any(|k| ends[0][k].is_some_and(|from| ends[1][k] != Some(from)));
+            && [0, 1, 3, 4, 5]
+                .into_iter()
+                .any(|k| ends[0][k].is_some_and(|from| ends[1][k] != Some(from)));
         if !step.commanded.contains(&true) || !(starts_blind || ends_blind || goes_aside) {
             return None;
         }
@@ -49,9 +51,8 @@ impl Resolver<'_> {
         let levels = known
             .map(|end| self.levels_while(&chain, &end.map(Option::unwrap_or_default), &turns))
             .reduce(|one, other| Level::lower(&one, &other));
-        // Otherwise only Z of the tip is known, about which the tool or the part swings.
-        let swings = self.tilting(&turns).next().is_some();
-        let levels = levels.or_else(|| swings.then(|| vec![Level::BELOW; chain.link() + 1]))?;
+        // Otherwise only Z of the tip is known, with which the axes move.
+        let levels = levels.unwrap_or_else(|| vec![Level::BELOW; chain.link() + 1]);
         Some(BlindWay { levels, is_at_top })
     }
 

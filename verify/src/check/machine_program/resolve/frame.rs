@@ -41,19 +41,18 @@ impl Resolver<'_> {
     pub(super) fn frame(&mut self, step: &Step) -> Result<Located<Frame>, StepFault> {
         let state = &*step.state;
         let is_tip = state.turns_with_workpiece();
-        // Z rests, so that its offset does not matter.
-        let rests_high = !is_tip
-            && !step.commanded[2]
-            && self.at_top.is_some()
-            && self.joints[2].is_some_and(|z| self.stands_high(z));
-        let Lengths { length, offset, is_known } =
-            match self.lengths(state)? {
-                Located::Known(lengths) => lengths,
-                Located::Unknown(
-                    UnknownCause::NoOffset { .. } | UnknownCause::OtherOffset { .. },
-                ) if rests_high => Lengths { length: 0.0, offset: 0.0, is_known: false },
-                Located::Unknown(cause) => return Ok(Located::Unknown(cause)),
-            };
+        let lengths = match self.lengths(state)? {
+            // Z rests, so that its offset does not matter.
+            Located::Unknown(UnknownCause::NoOffset { .. } | UnknownCause::OtherOffset { .. })
+                if self.rests_high(step) =>
+            {
+                let length = self.stated_length(state);
+                Lengths { length: length.unwrap_or(0.0), offset: 0.0, is_known: length.is_some() }
+            }
+            Located::Known(lengths) => lengths,
+            Located::Unknown(cause) => return Ok(Located::Unknown(cause)),
+        };
+        let Lengths { length, offset, is_known } = lengths;
         let Some(shift) = self.known_in_machine(&state.shift) else {
             return Ok(Located::Unknown(UnknownCause::Shift));
         };
@@ -135,7 +134,7 @@ impl Resolver<'_> {
     /// for a program that names no tool: Z of the work offset is then that of the tip.
     pub(super) fn lengths(&self, state: &ControlState) -> Result<Located<Lengths>, StepFault> {
         let tool = state.tool.or(self.unnamed_tool);
-        let known = tool.and_then(|tool| self.setup.lengths.get(&tool).copied());
+        let known = self.stated_length(state);
         // Without a tool, Z is that of the gauge point, if that has a place and the offset is known.
         if self.setup.is_spindle_empty(state.tool) {
             match state.length {
@@ -179,6 +178,20 @@ impl Resolver<'_> {
             return Err(StepFault::Length { register, offset, tool, length });
         }
         Ok(Located::Known(lengths))
+    }
+
+    /// Returns the stated length of the tool in the spindle, in mm.
+    fn stated_length(&self, state: &ControlState) -> Option<f64> {
+        let tool = state.tool.or(self.unnamed_tool)?;
+        self.setup.lengths.get(&tool).copied()
+    }
+
+    /// Returns whether the length of the tool in the spindle is known: it is stated, or the offset in the tool's own register is.
+    pub(in crate::check::machine_program) fn has_length(&self, state: &ControlState) -> bool {
+        let is_own =
+            |register: u32| state.tool.or(self.unnamed_tool).is_none_or(|tool| tool == register);
+        self.stated_length(state).is_some()
+            || matches!(state.length, LengthOffset::On { register, length: Some(_) } if is_own(register))
     }
 
     /// Returns the register of a length offset that is not that of the tool in the spindle, if both lengths are known.

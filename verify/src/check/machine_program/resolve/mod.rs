@@ -492,6 +492,14 @@ impl<'a> Resolver<'a> {
         self.height == Height::OfAxis && self.is_high(z)
     }
 
+    /// Returns whether Z rests there during a step.
+    fn rests_high(&self, step: &Step) -> bool {
+        !step.state.turns_with_workpiece()
+            && !step.commanded[2]
+            && self.at_top.is_some()
+            && self.joints[2].is_some_and(|z| self.stands_high(z))
+    }
+
     /// Returns the place of Z's axis at the end of a step that leads to the top of its travel or its reference position, whatever its tool is.
     fn end_at_top(&self, step: &Step) -> Option<f64> {
         step.machine_height.filter(|z| step.is_homeward && self.is_high(*z))
@@ -574,6 +582,10 @@ impl<'a> Resolver<'a> {
             if end[k].is_none() && !step.commanded[k] {
                 end[k] = start[k];
             }
+        }
+        // The program counts Z with an offset that may be that of another tool.
+        if self.rests_high(step) {
+            end[2] = start[2];
         }
         if let (Some(axis), Some([x, y, z, ..])) = (step.tool_vector, linear_only(&end)) {
             let near = self.joints.map(Option::unwrap_or_default);
