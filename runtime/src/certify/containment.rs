@@ -182,7 +182,7 @@ impl QuerySetting<'_> {
         for turn in 0..turns {
             let (sin, cos) = (TAU * f64::from(turn) / f64::from(AZIMUTHS)).sin_cos();
             let point = self.to_world(pose, [d * cos - y * sin, d * sin + y * cos, z]);
-            if triangles.distance(point) > needed {
+            if triangles.are_beyond(point, needed) {
                 return self.bvh.locate(point);
             }
         }

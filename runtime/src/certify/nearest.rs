@@ -24,10 +24,22 @@ impl NearestTriangle<'_> {
     /// Returns the distance of a point from the nearest triangle, in the part's frame and unit. It is the
     /// distance from a point of a triangle, rounded by some units in the last place of the coordinates.
     pub fn distance(&mut self, point: Point3<f64>) -> f64 {
+        self.squared_distance_below(point, f64::INFINITY).sqrt()
+    }
+
+    /// Returns whether no triangle is within a distance of a point, with the rounding of [`NearestTriangle::distance`].
+    pub(crate) fn are_beyond(&mut self, point: Point3<f64>, distance: f64) -> bool {
+        let limit = distance * distance;
+        self.squared_distance_below(point, limit) >= limit
+    }
+
+    /// Returns the squared distance of a point from the nearest triangle, or `limit` if that is not below it.
+    fn squared_distance_below(&mut self, point: Point3<f64>, limit: f64) -> f64 {
         let frame = &self.bvh.frame;
         let p = frame.inside(point.into());
         let bvh = self.bvh;
-        let mut nearest = squared_distance(point, bvh.corners[self.last].map(Point3::from));
+        let last = squared_distance(point, bvh.corners[self.last].map(Point3::from));
+        let mut nearest = limit.min(last);
         self.stack.clear();
         self.stack.push((0.0, 0, 0));
         while let Some((low, level, index)) = self.stack.pop() {
@@ -66,7 +78,7 @@ impl NearestTriangle<'_> {
             // The nearest box comes off the stack first.
             self.stack[first..].sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
         }
-        nearest.sqrt()
+        nearest
     }
 }
 

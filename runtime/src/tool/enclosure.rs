@@ -251,6 +251,7 @@ impl Lane for Enclosure {
     fn max(a: Enclosure, b: Enclosure) -> Enclosure {
         -Enclosure::smaller(-a, -b)
     }
+    #[inline]
     fn pick(mask: Ternary, region: Enclosure, mut before: Enclosure) -> Enclosure {
         // An index is a constant of the generated code, and only the bits of those that are possible are asked for.
         let bits = bit(region.value.low as usize);
@@ -471,6 +472,7 @@ impl BitOr for Ternary {
 }
 
 impl BitOrAssign for Ternary {
+    #[inline]
     fn bitor_assign(&mut self, other: Ternary) {
         // If both may hold, it is not known which one does.
         match (self.yes, other.yes) {
@@ -486,6 +488,7 @@ impl BitOrAssign for Ternary {
 
 impl Not for Ternary {
     type Output = Ternary;
+    #[inline]
     fn not(self) -> Ternary {
         let [yes, no] = self.gaps;
         Ternary { yes: self.no, no: self.yes, gaps: [no, yes] }
