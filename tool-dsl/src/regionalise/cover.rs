@@ -395,11 +395,22 @@ impl Section<'_> {
     }
 
     /// Returns the part of a polygon beyond which a feature owns no point, since another one is nearer there: of those that are the
-    /// nearest at vertices, the ones whose distance, as that of the feature, is bounded by a linear function.
+    /// nearest at vertices, the ones whose distance, as that of the feature, is bounded by a linear function; or an end of a segment, which
+    /// is nearer to all of a polygon if it is at the vertices.
     pub(crate) fn possibly_owned(&self, feature: usize, polygon: &Polygon) -> Option<Polygon> {
         let middle = centroid(polygon);
         // The points that a feature owns are as far as its line or circle.
         let (own, true) = self.low(feature, middle) else { return Some(polygon.clone()) };
+        // Beyond a corner of the outline, between the normals there, nothing else is near.
+        let ends = self.outline.iter().flat_map(Segment::ends);
+        let from = |end: &Point| norm(minus(*end, middle));
+        let end = ends.min_by(|one, other| from(one).total_cmp(&from(other)));
+        let is_nearer = |end: Point| {
+            polygon.iter().all(|p| norm(minus(*p, end)) + self.tolerance() < own.at(*p))
+        };
+        if end.is_some_and(is_nearer) {
+            return None;
+        }
         let nearest = |p: &Point| self.nearest(*p).0.filter(|nearest| *nearest != feature);
         let mut rivals: Vec<usize> = polygon.iter().filter_map(nearest).collect();
         rivals.sort_unstable();
