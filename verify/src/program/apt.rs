@@ -23,6 +23,7 @@ mod cycle;
 use super::{
     CutterLocation, Faults, Located, ProgramFault, Tape, Tapes, axis_pose, lines, number, shown,
 };
+use crate::gcode::is_word_of_sinumerik;
 use cycle::{Arc, Cycle, Stop};
 use nalgebra::Vector3;
 use std::collections::{BTreeMap, HashSet};
@@ -649,9 +650,9 @@ fn skip_statement(word: &str, arguments: &str) -> Result<String, ProgramFault> {
     }
     if let Some(verbatim) = VERBATIM_WORDS.iter().find(|verbatim| word.starts_with(**verbatim)) {
         let text = format!("{} {}", &word[verbatim.len()..], arguments.to_ascii_uppercase());
-        return match could_move(text.trim()) {
-            true => Err(ProgramFault::Verbatim { word: (*verbatim).to_owned() }),
-            false => Ok((*verbatim).to_owned()),
+        return match moves_nothing(&text) {
+            true => Ok((*verbatim).to_owned()),
+            false => Err(ProgramFault::Verbatim { word: (*verbatim).to_owned() }),
         };
     }
     // Settings of SolidWorks CAM about tools, and names of CATIA's.
@@ -685,73 +686,62 @@ fn skip_statement(word: &str, arguments: &str) -> Result<String, ProgramFault> {
     }
 }
 
-/// Words of controls that can move the tool, change what positions mean, or lead elsewhere, without a number: of Sinumerik, Heidenhain and
-/// macros.
+/// Words of which none stands in prose that is passed over: of Heidenhain with free words behind them, of Sinumerik, Okuma and macros.
 #[rustfmt::skip]
-const CONTROL_WORDS: [&str; 41] = [
+const CONTROL_WORDS: [&str; 51] = [
     "ATRANS", "TRANS", "AROT", "ROT", "AMIRROR", "MIRROR", "ASCALE", "SCALE", "SUPA", "POS", "POSA", "SPOS", "MCALL", "EXTCALL",
     "TRAORI", "TRAFOOF", "TRANSMIT", "TRACYL", "CALL", "CYCL", "PLANE", "LBL", "L", "LN", "LP", "CC", "CR", "IF", "WHILE", "GOTO",
     "REPEAT", "GOTOF", "GOTOB", "GOTOC", "GOTOS", "RND", "CHR", "CHF", "APPR", "DEP", "CASE",
+    "TCH", "FN", "FUNCTION", "DEF", "PGM", "SEL", "DECLARE", "SQL", "PRESET", "MODIN",
 ];
 
-/// Words of blocks beside letters with numbers, of which no block is by itself.
-const BLOCK_WORDS: [&str; 14] =
-    ["FMAX", "FAUTO", "FU", "FZ", "RL", "RR", "DR", "MAX", "AC", "IC", "DC", "ANG", "RP", "AP"];
+/// Returns whether a text for a control, in capitals, is known to move nothing: comments, and prose, which no control executes.
+fn moves_nothing(text: &str) -> bool {
+    text.split(';').all(|part| match without_comments(part) {
+        Some(plain) => plain.trim().is_empty() || is_plain_prose(&plain),
+        None => false,
+    })
+}
 
-/// Returns whether a text, in capitals, could be a block for a control: if it has a code, a word of a control, a variable or a call, or
-/// letters with numbers and no word that a block cannot have. A comment in parentheses and prose are none.
-fn could_move(text: &str) -> bool {
-    // A parenthesis after a name has a comment, or the arguments of a call.
+/// Returns a text without what stands in parentheses and brackets; `None` if one of them is not closed.
+fn without_comments(text: &str) -> Option<String> {
     let mut plain = String::new();
-    let mut depth = 0;
+    let mut depth = 0_usize;
     for character in text.chars() {
         match character {
-            '(' => depth += 1,
-            ')' if depth > 0 => depth -= 1,
-            '"' | '\'' => plain.push(' '),
+            '(' | '[' => depth += 1,
+            ')' | ']' => depth = depth.checked_sub(1)?,
             _ if depth == 0 => plain.push(character),
             _ => {}
         }
     }
-    let mut blocks = plain.split([';', '$']).chain([text]);
-    blocks.any(|block| is_block(block.trim()))
+    (depth == 0).then_some(plain)
 }
 
-/// Returns whether a text could be a block.
-fn is_block(text: &str) -> bool {
-    if text.starts_with('(') && text.find(')') == Some(text.len() - 1) {
-        return false;
-    }
-    let has_code = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '.').any(|word| {
+/// Returns whether a text is prose: without signs of assignments and variables, codes and words of [`CONTROL_WORDS`], and with two words in
+/// a row that no control has, for which any of them refuses the text as a block.
+fn is_plain_prose(text: &str) -> bool {
+    let is_sign =
+        |c: char| !(c.is_alphanumeric() || c.is_whitespace() || ".,:!?'\"&+-*/°".contains(c));
+    let is_code = |word: &str| {
         let number = word.strip_prefix("CYCLE");
         let number = number.or_else(|| word.strip_prefix(['G', 'M', 'O', 'T', 'N', 'L', 'P']));
         CONTROL_WORDS.contains(&word)
             || number.is_some_and(|number| number.starts_with(|c: char| c.is_ascii_digit()))
-    });
-    // `X=5` and `R1=5` of Sinumerik.
-    let assigns = text.split_whitespace().any(|word| {
-        word.split_once('=').is_some_and(|(name, _)| {
-            let mut name = name.chars();
-            name.next().is_some_and(|c| c.is_ascii_alphabetic()) && name.all(|c| c.is_ascii_digit())
-        })
-    });
-    // The name of a subprogram calls it, alone or with arguments.
-    let is_name = |text: &str| {
-        text.starts_with(|c: char| c.is_ascii_alphabetic())
-            && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
     };
-    let is_call = is_name(text.split_once('(').map_or(text, |(name, _)| name.trim_end()));
-    has_code || assigns || is_call || text.contains(['#', '%']) || has_words_of_blocks(text)
-}
-
-/// Returns whether a text has a letter with a number, and no word that a block cannot have: a control refuses it whole.
-fn has_words_of_blocks(text: &str) -> bool {
-    let mut letters = text.split(|c: char| !c.is_ascii_alphabetic()).filter(|run| !run.is_empty());
-    let is_of_block =
-        |run: &str| run.len() == 1 || BLOCK_WORDS.contains(&run) || CONTROL_WORDS.contains(&run);
-    letters.clone().any(|run| run.len() == 1)
-        && text.contains(|c: char| c.is_ascii_digit())
-        && letters.all(is_of_block)
+    let mut words = text.split(|c: char| !c.is_alphanumeric() && c != '.');
+    if text.contains(is_sign) || words.any(is_code) {
+        return false;
+    }
+    let is_plain = |word: &&str| {
+        // A colon ends a label of Sinumerik, behind which a name is a call.
+        let word = word.trim_matches(|c: char| !c.is_alphanumeric() && c != ':');
+        word.chars().count() > 1
+            && word.chars().all(char::is_alphabetic)
+            && !is_word_of_sinumerik(word)
+    };
+    let words: Vec<&str> = text.split_whitespace().collect();
+    words.windows(2).any(|pair| pair.iter().all(is_plain))
 }
 
 /// Returns whether a word is a letter with a number.

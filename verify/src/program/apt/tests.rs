@@ -151,7 +151,10 @@ fn what_could_be_a_motion_is_refused() {
                  ARC/1,2,3|CIRC/1,2,3|ARCDAT/1,2,3|DRILL/1,2,3|GODLT/1,2,3|ORIGIN/0,0,35|CUTCOM/3DCOMP|\
                  MODE/INCR|THICK/-5|HEAD/2|LOADTL/2|CUTTER/50|INSERT G0 Z-5|LETTER/G1 Z-5|INSERT/X5 Y-2.|INSERT/TRANS X10|INSERT/R1=5|INSERT/L X+5|\
                  INSERT/CYCLE800(1)|INSERT/X0Y0Z-5.|INSERT/Z-5(PARK)|INSERT/Z[-5.]|INSERT/Z-5. FMAX|INSERT/X+0 Z-5. R0 FMAX|INSERT/Z-5.,F100|INSERT/'Z-5.'|INSERT/Z-5. (DOWN)|INSERT/G 0 Z -5.|INSERT/Z-5.F100.|INSERT/Z-5.*|INSERT/(A) ; Z-5.|INSERT/GOTOF ENDE|\
-                 INSERT/MYSUB(1,2)|INSERT/MYSUB|INSERT/RND R5|INSERT/#1=2|INSERT/CALL LBL 5|RAPID/ON|OPSKIP/ON|\
+                 INSERT/MYSUB(1,2)|INSERT/MYSUB|INSERT/RND R5|INSERT/#1=2|INSERT/CALL LBL 5|INSERT $P_PFRAME=CTRANS(Z,-10)|INSERT $P_UIFR[1,Z,TR]=-10|\
+                 INSERT $TC_DP3[1,1]=90|INSERT TCARR=1|INSERT TCH PROBE 400 BASIC ROTATION|INSERT FUNCTION RESET TCPM|\
+                 INSERT FN 17: SYSWRITE ID 220 NR4 IDX3 = -10|INSERT TOROT PAROT|INSERT (A|INSERT FOO BAR=5|INSERT FOO: BAR|\
+                 RAPID/ON|OPSKIP/ON|\
                  TRACUT/M1|C1 = CIRCLE/0,0,1|M1 = MACRO/|AUXFUN/98|PREFUN/91|X|GOTO|TLDATA/MILL,50.,0.";
     for word in words.split('|') {
         let text =
@@ -373,6 +376,11 @@ fn programs_of_solidworks_are_read() {
     }
     let rapids = read.locations.iter().filter(|stop| stop.rapid).map(|stop| stop.line);
     assert_eq!(rapids.collect::<Vec<_>>(), [10, 18]);
+    for text in
+        ["INSERT/(G0 Z-5)", "INSERT TOOL 3: 10MM END MILL (LONG)", "LETTER/FACE THE TOP, 2 PASSES"]
+    {
+        assert_eq!(program(&format!("{text}\nGOTO/1,2,3\nFINI\n")).ignored.len(), 1);
+    }
     // The other way round is three quarters of the circle.
     let other = program(&text.replace("0,0,1,20", "0,0,-1,20"));
     let lowest = other.locations.iter().map(|stop| stop.pose.tip().y).fold(0.0, f64::min);
