@@ -8,7 +8,7 @@
 //! One of the last two, or CATIA's `END`, has to end the program, so that a truncated file is never taken for a whole one. `$$`
 //! opens a comment, a trailing `$` continues the statement, `;` separates two statements, and case does not
 //! matter. Two comments state the frame of the positions, which may be repeated and not changed: CATIA's machining axis and
-//! Creo's coordinate system. Creo states several positions on an arc after one `CIRCLE`.
+//! Creo's coordinate system. Creo states its cutter, and whether positions are those of the contour, in comments, too. Creo states several positions on an arc after one `CIRCLE`.
 //!
 //! Statements about the tool hold for the positions that follow them: `LOADTL` between two positions changes the tool,
 //! and the cutters stated before or after it, up to the next position, are those of the new one. In NX's files,
@@ -20,11 +20,12 @@
 
 mod cycle;
 
+use super::cutter::{Stated, StatedCutter};
 use super::{
     CutterLocation, Faults, Located, ProgramFault, Tape, Tapes, axis_pose, lines, number, shown,
 };
 use crate::gcode::is_word_of_sinumerik;
-use cycle::{Arc, Cycle, Stop};
+use cycle::{Arc, Cycle, Normals, Stop};
 use nalgebra::Vector3;
 use std::collections::{BTreeMap, HashSet};
 use std::mem;
@@ -39,14 +40,30 @@ const UPRIGHT: [f64; 3] = [0.0, 0.0, 1.0];
 /// The comment with which CATIA writes the machining axis.
 const CATIA_AXIS: &str = "$$*CATIA0";
 
-/// The comment with which Creo begins its coordinate system. Rows of numbers may follow.
-const CREO_SYSTEM: &str = "$$-> CSYS";
-
-/// The comment with which Creo says whether positions are those of the tool's centre or of the contour.
-const CREO_CONTOUR: &str = "$$-> CUTCOM_GEOMETRY_TYPE";
-
 /// The beginning of Creo's comments.
 const CREO_COMMENT: &str = "$$->";
+
+/// The words of Creo's comments that are read: the coordinate system, whether positions are those of the tool's centre or of the contour,
+/// and the cutter.
+const CREO_SYSTEM: &str = "$$-> CSYS";
+const CREO_CONTOUR: &str = "$$-> CUTCOM_GEOMETRY_TYPE";
+const CREO_CUTTER: &str = "$$-> CUTTER";
+
+/// Returns the word of a comment of Creo that is read, and its arguments.
+fn creo_comment(line: &str) -> Option<CreoComment<'_>> {
+    let (name, arguments) = line.strip_prefix(CREO_COMMENT)?.split_once('/')?;
+    let known = [CREO_SYSTEM, CREO_CONTOUR, CREO_CUTTER];
+    let is_named =
+        |word: &&str| word[CREO_COMMENT.len()..].trim().eq_ignore_ascii_case(name.trim());
+    let word = known.into_iter().find(is_named)?;
+    Some(CreoComment { word, arguments: arguments.trim().trim_end_matches('$').trim_end() })
+}
+
+/// A comment of Creo that is read.
+struct CreoComment<'a> {
+    word: &'static str,
+    arguments: &'a str,
+}
 
 /// Reads an APT-CL program. All statements that are refused are found, each fault once.
 pub(super) fn read(text: &str) -> Result<Tapes, Faults> {
@@ -71,8 +88,9 @@ pub(super) fn read(text: &str) -> Result<Tapes, Faults> {
     if reader.arc.is_some() {
         refuse((end, ProgramFault::Arc { what: "ends at no position" }));
     }
-    if let Some(line) = reader.either_way.filter(|_| reader.turns_about_normals != Some(true)) {
-        let what = "of half a turn fits both directions, and no other arc tells that the file's normals state them";
+    if let Some(line) = reader.normals.ambiguous() {
+        let what =
+            "fits both directions, and no clockwise arc tells that the file's normals state them";
         refuse((line, ProgramFault::Arc { what }));
     }
     // A file without positions is refused as such, whether it ends or not.
@@ -115,17 +133,17 @@ fn statements(text: &str) -> (Vec<(usize, String)>, Option<usize>) {
     let mut open: Option<(usize, String)> = None;
     let mut lines = lines(text).peekable();
     while let Some((line, raw)) = lines.next() {
-        if raw.starts_with(CREO_SYSTEM) {
-            // Rows may be comments or not, and end in `$` or not.
-            let mut system = raw.trim_end_matches('$').to_owned();
+        if let Some(CreoComment { word, arguments }) = creo_comment(raw) {
+            // Rows of numbers may follow. They may be comments or not, and end in `$` or not.
+            let mut statement = format!("{word} / {arguments}");
             while let Some(row) = lines.peek().and_then(|(_, row)| numbers_of(row)) {
-                system = format!("{system}, {row}");
+                statement = format!("{statement}, {row}");
                 lines.next();
             }
-            statements.push((line, system));
+            statements.push((line, statement));
             continue;
         }
-        if open.is_none() && (is_prose(raw) || raw.starts_with(CREO_CONTOUR)) {
+        if open.is_none() && is_prose(raw) {
             statements.push((line, raw.to_owned()));
             continue;
         }
@@ -173,17 +191,15 @@ struct Reader {
     is_creo: bool,
     /// The arc that the last statement ended.
     ended_arc: Option<Arc>,
-    /// Direction of the arcs, as far as their angles tell, `true` if all turn about their normals: older post processors state one normal for both
-    /// directions.
-    turns_about_normals: Option<bool>,
-    /// The line of the first arc whose angle is that of both directions.
-    either_way: Option<usize>,
+    normals: Normals,
     /// Number of chords of all arcs.
     chords: usize,
     /// The direction in which CATIA's next arc begins.
     direction: Option<Vector3<f64>>,
     /// Set where Creo's positions are those of the contour.
     is_contour: bool,
+    /// The arguments of `CUTCOM` in force, by which the control corrects the tool.
+    compensation: Option<String>,
     /// The cycle at each position.
     cycle: Option<Cycle>,
     /// Set once there was a `GOTO`.
@@ -209,8 +225,7 @@ struct ToolStatement {
     line: usize,
     word: String,
     arguments: Vec<String>,
-    /// The cutter that it states, as arguments of `CUTTER`.
-    cutter: Option<Vec<f64>>,
+    cutter: Option<StatedCutter>,
 }
 
 impl Reader {
@@ -243,7 +258,7 @@ impl Reader {
         }
         if word == CREO_CONTOUR {
             self.is_contour = rest.eq_ignore_ascii_case("OUTPUT_ON_PROFILE");
-            return Ok(());
+            return self.check_contour();
         }
         let ended = self.finished || self.path_ended && !matches!(word, "FINI" | "TOOL PATH");
         if ended && !is_prose(text) {
@@ -277,9 +292,11 @@ impl Reader {
                 self.direction = Some(Vector3::new(i, j, k));
             }
             "TLON,GOFWD" => self.catia_arc(line, rest)?,
-            "CUTCOM" if self.is_contour && !rest.eq_ignore_ascii_case("OFF") => {
-                let argument = format!("{}, with OUTPUT_ON_PROFILE,", unquoted(rest));
-                return Err(ProgramFault::Compensation { argument });
+            "CUTCOM" => {
+                self.compensation =
+                    Some(rest.to_owned()).filter(|word| !word.eq_ignore_ascii_case("OFF"));
+                self.check_contour()?;
+                self.other(line, text, word, rest)?;
             }
             "CYCLE" => {
                 self.cycle = Cycle::read(rest, self.cycle.as_ref())?;
@@ -299,7 +316,7 @@ impl Reader {
             "RAPID" if rest.is_empty() => self.rapid = true,
             "MULTAX" => self.multax(rest)?,
             "UNITS" => self.units(line, rest)?,
-            "LOADTL" | "TOOLNO" | "CUTTER" | "TLDATA" | "TOOL PATH" => {
+            "LOADTL" | "TOOLNO" | "CUTTER" | "TLDATA" | "TOOL PATH" | CREO_CUTTER => {
                 refuse_motions(word, rest)?;
                 // Only NX has it, whose positions without an axis keep the last one.
                 self.is_nx |= word == "TOOL PATH";
@@ -308,7 +325,7 @@ impl Reader {
                     self.several.get_or_insert((line, after));
                 }
                 let statement = tool_statement(line, word, rest)?;
-                if word != "CUTTER" {
+                if !matches!(word, "CUTTER" | CREO_CUTTER) {
                     self.tape.ignored.push((line, word.to_owned()));
                 }
                 self.pending.push(statement);
@@ -322,6 +339,17 @@ impl Reader {
             other => self.other(line, text, other, rest)?,
         }
         Ok(())
+    }
+
+    /// Refuses positions of the contour which the control corrects by the whole radius of the tool.
+    fn check_contour(&self) -> Result<(), ProgramFault> {
+        match &self.compensation {
+            Some(argument) if self.is_contour => {
+                let argument = format!("{}, with OUTPUT_ON_PROFILE,", unquoted(argument));
+                Err(ProgramFault::Compensation { argument })
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Reads a position. One that is the last of the file and cannot be read was truncated.
@@ -338,18 +366,18 @@ impl Reader {
                 let before = self.tape.locations.last().map(|location| location.pose);
                 let unit = self.tape.unit.map(|(unit, _)| unit);
                 let ended_arc = self.ended_arc.take().filter(|_| self.is_creo && !rapid);
-                let further = || ended_arc?.continued(&before?, &pose, unit);
-                let stops = match (self.arc.take().or_else(further), &self.cycle) {
+                let mut arc = self.arc.take();
+                if let (None, Some(ended), Some(before)) = (arc, ended_arc, &before) {
+                    arc = ended.continued(before, &pose, unit)?;
+                }
+                let stops = match (arc, &self.cycle) {
                     (Some(stated), None) => {
                         let (poses, arc) =
                             stated.stops(before.as_ref(), &pose, unit, self.chords)?;
-                        let is_of_both = |before| stated.fits_both_ways(&before, &pose);
-                        if before.is_some_and(is_of_both) {
-                            self.either_way.get_or_insert(line);
-                        } else if arc.states_angle() {
-                            let about = self.turns_about_normals.unwrap_or(true);
-                            self.turns_about_normals = Some(about && !arc.is_reversed(&stated));
+                        if let Some(before) = &before {
+                            self.normals.add(line, &stated, &arc, [before, &pose]);
                         }
+                        self.keep_unscaled_arc(line);
                         self.chords += poses.len();
                         self.ended_arc = Some(arc);
                         poses.into_iter().map(|pose| Stop { pose, rapid }).collect()
@@ -365,6 +393,13 @@ impl Reader {
             }
             Err(_) if is_last => Err(ProgramFault::Unfinished),
             Err(fault) => Err(fault),
+        }
+    }
+
+    /// Keeps the line of the first arc that is divided into chords without a stated unit.
+    fn keep_unscaled_arc(&mut self, line: usize) {
+        if self.tape.unit.is_none() {
+            self.tape.unscaled_arc.get_or_insert(line);
         }
     }
 
@@ -385,6 +420,7 @@ impl Reader {
         let (arc, end) = Arc::catia(rest, &before, direction)?;
         let unit = self.tape.unit.map(|(unit, _)| unit);
         let (poses, _) = arc.stops(Some(&before), &end, unit, self.chords)?;
+        self.keep_unscaled_arc(line);
         self.chords += poses.len();
         self.add(line, poses.into_iter().map(|pose| Stop { pose, rapid }).collect());
         Ok(())
@@ -498,7 +534,7 @@ impl Reader {
                 return Err(fault);
             }
             let ToolStatement { line, word, arguments, cutter } = statement;
-            self.tape.cutters.extend(cutter.map(|cutter| (line, cutter)));
+            self.tape.cutters.extend(cutter);
             self.tool.insert(word, (line, arguments));
         }
         Ok(())
@@ -538,17 +574,31 @@ fn tool_statement(line: usize, word: &str, rest: &str) -> Result<ToolStatement, 
     }
     let numbers =
         |parts: &[String]| parts.iter().map(|part| number(part)).collect::<Result<Vec<f64>, _>>();
-    let cutter = match (word, &arguments[..]) {
-        ("CUTTER", arguments) => Some(numbers(arguments)?),
+    let stated = match (word, &arguments[..]) {
+        ("CUTTER", arguments) => Some(Stated::Form(numbers(arguments)?)),
+        // Creo leaves the corner out, whatever it is.
+        (CREO_CUTTER, [diameter]) => Some(Stated::Diameter(number(diameter)?)),
+        (CREO_CUTTER, arguments) => Some(Stated::Form(numbers(arguments)?)),
         // NX writes a mill as diameter, corner, height, and the angles of side and end.
         ("TLDATA", [kind, diameter, corner, others @ ..]) if kind == "MILL" => {
             let (diameter, corner) = (number(diameter)?, number(corner)?);
             let angle = |at: usize| others.get(at).map_or(Ok(0.0), |angle| number(angle));
             let (side, end) = (angle(1)?, angle(2)?);
-            Some(vec![diameter, corner, 0.5 * diameter - corner, corner, end, side])
+            let centre = 0.5 * diameter - corner;
+            Some(Stated::Form(vec![diameter, corner, centre, corner, end, side]))
         }
+        ("TLDATA", [kind, _, diameter, ..]) if kind == "DRILL" && arguments[1] == "MILL" => {
+            Some(Stated::Diameter(number(diameter)?))
+        }
+        ("TLDATA", [kind, diameter, ..])
+            if ["DRILL", "TCUTTER", "MILL"].contains(&kind.as_str()) =>
+        {
+            Some(number(diameter).map_or(Stated::Other, Stated::Diameter))
+        }
+        ("TLDATA", _) => Some(Stated::Other),
         _ => None,
     };
+    let cutter = stated.map(|stated| StatedCutter { line, stated });
     Ok(ToolStatement { line, word: word.to_owned(), arguments, cutter })
 }
 
@@ -607,6 +657,9 @@ const IGNORED_WORDS: [&str; 36] = [
     "CLEARP", "CLRSRF", "SELCTL", "PAINT", "DISPLY", "PLOT", "NOPLOT", "NOPOST", "VERIFY", "AUTOPS",
 ];
 
+/// Settings of SolidWorks CAM about tools. Others of its words could turn the table or change the frame.
+const CSI_WORDS: [&str; 3] = ["CSI_TOOL", "CSI_SET_FLUTE_LENGTH", "CSI_SET_EXTENSION_LENGTH"];
+
 /// Words that move the tool, or decide whether and how often it moves.
 #[rustfmt::skip]
 const MOTION_WORDS: [&str; 49] = [
@@ -655,8 +708,8 @@ fn skip_statement(word: &str, arguments: &str) -> Result<String, ProgramFault> {
             false => Err(ProgramFault::Verbatim { word: (*verbatim).to_owned() }),
         };
     }
-    // Settings of SolidWorks CAM about tools, and names of CATIA's.
-    if word.starts_with("CSI_") || word == "TPRINT" {
+    // Settings about tools, and names of CATIA's.
+    if CSI_WORDS.contains(&word) || word == "TPRINT" {
         refuse_motions(word, &arguments.replace('/', " "))?;
         return Ok(word.to_owned());
     }
