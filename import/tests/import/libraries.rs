@@ -2,6 +2,7 @@
 
 use serde_json::{Map, Value, json};
 use std::ffi::OsStr;
+use std::io::Write as _;
 use std::path::Path;
 use touchoff_import::{FindError, ImportedTool, Library, find_in_folder, write_numbers};
 use touchoff_tests::fusion;
@@ -235,4 +236,35 @@ fn doubts_and_hands_of_tools_are_told() {
         ))
     };
     assert_eq!([60, 80, 100].map(|length| gauge(length).1.len()), [1, 0, 0]);
+}
+
+/// One of two libraries is dropped otherwise.
+#[test]
+fn an_archive_has_one_library() {
+    let packed = |names: &[&str]| {
+        let mut archive = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+        for name in names {
+            let options = zip::write::SimpleFileOptions::default();
+            archive.start_file(*name, options).expect("an entry");
+            archive.write_all(br#"{"data": []}"#).expect("an archive");
+        }
+        let content = archive.finish().expect("an archive").into_inner();
+        Library::parse(Path::new("l.tools"), &content)
+    };
+    assert!(packed(&["tools.json", "picture.png"]).is_ok());
+    let error = packed(&["a.json", "b.json"]).expect_err("two libraries").to_string();
+    assert!(error.contains("2 `.json` files"), "{error}");
+    // The second name is changed to the first one, which writers do not do.
+    let mut archive = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+    for name in ["tools.json", "tuuls.json"] {
+        let options = zip::write::SimpleFileOptions::default();
+        archive.start_file(name, options).expect("an entry");
+        archive.write_all(br#"{"data": []}"#).expect("an archive");
+    }
+    let mut content = archive.finish().expect("an archive").into_inner();
+    while let Some(at) = content.windows(5).position(|bytes| bytes == b"tuuls") {
+        content[at..at + 5].copy_from_slice(b"tools");
+    }
+    let error = Library::parse(Path::new("l.tools"), &content).expect_err("one name").to_string();
+    assert!(error.contains("two files of one name"), "{error}");
 }
