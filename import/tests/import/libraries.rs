@@ -236,6 +236,38 @@ fn doubts_and_hands_of_tools_are_told() {
         ))
     };
     assert_eq!([60, 80, 100].map(|length| gauge(length).1.len()), [1, 0, 0]);
+    // That of the holder can be a text with a unit, or follows from its segments.
+    let holder = |gauge: &str| {
+        fusion(&format!(
+            ", \"assemblyGaugeLength\": 60}}, \"holder\": {{\"unit\": \"millimeters\"{gauge}, \"segments\": \
+             [{{\"height\": 40, \"lower-diameter\": 30, \"upper-diameter\": 30}}]}}, \"x\": {{\"y\": 1"
+        ))
+        .1
+        .len()
+    };
+    let gauges = ["", ", \"gaugeLength\": \"40 mm\"", ", \"gaugeLength\": \"2 cm\""];
+    assert_eq!(gauges.map(holder), [1, 1, 0]);
+    let assembly = "<holder guid=\"h\"><section diameter=\"40\" length=\"30\"/></holder>";
+    assert_eq!(hsm("", assembly).1.len(), 0);
+    let short = hsm("<body assembly-gauge-length=\"60\"/>", assembly);
+    assert_eq!(short.1.len(), 1, "{short:?}");
+    // Of two statements, the one that gives the narrower tool can be the wrong one.
+    let ball = |radius: u32| {
+        let text = format!(
+            "{{\"data\": [{{\"type\": \"ball end mill\", \"unit\": \"millimeters\", \"geometry\": {{\"DC\": 6, \"RE\": {radius}, \
+             \"LCF\": 20, \"OAL\": 70, \"SFDM\": 6}}}}]}}"
+        );
+        of("l.json", &text).1.len()
+    };
+    assert_eq!([2, 3, 5].map(ball), [0, 0, 1]);
+    let chamfer = |height: &str| {
+        let text = format!(
+            "{{\"shape\": \"chamfer.fcstd\", \"parameter\": {{\"CuttingEdgeHeight\": \"{height}\", \"Length\": \"80 mm\", \
+             \"ShankDiameter\": \"6 mm\", \"Diameter\": \"10 mm\", \"CuttingEdgeAngle\": \"60 deg\", \"TipDiameter\": \"1 mm\"}}}}"
+        );
+        of("c.fctb", &text).1.len()
+    };
+    assert_eq!(["5 mm", "7.794 mm", "9 mm"].map(chamfer), [1, 0, 0]);
 }
 
 /// One of two libraries is dropped otherwise.
