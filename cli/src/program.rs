@@ -26,7 +26,7 @@ pub(crate) fn read(path: &Path, info: &ToolInfo, unit: Unit) -> Result<ClData, F
 /// Warns of a cutter in a program that is not compared with the tool.
 pub(crate) fn warn_of_cutter(program: &dyn Display, line: usize, info: &ToolInfo) {
     message!(
-        "{program}:{line}: CUTTER is not compared with the tool, as it cannot describe `{}`",
+        "{program}:{line}: no more than the diameter of the stated cutter is compared with `{}`: check that it is the tool of the program",
         info.name
     );
 }

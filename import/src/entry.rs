@@ -102,6 +102,8 @@ pub enum Note {
         second: Stated,
         /// The one that was taken.
         taken: &'static str,
+        /// Set if the tool of the other can reach beyond the one that is drawn.
+        is_narrower: bool,
     },
     /// The gauge length of the assembly is not the sum of stick-out and holder, which was taken.
     GaugeLength {
@@ -165,6 +167,7 @@ impl Note {
             | Note::OtherExpression { .. } => true,
             // The holder would be lower than it is drawn.
             Note::GaugeLength { stated, sum } => stated < sum,
+            Note::Contradiction { is_narrower, .. } => *is_narrower,
             _ => false,
         }
     }
@@ -199,7 +202,7 @@ impl fmt::Display for Note {
             Note::LeftHanded => f.write_str(
                 "it is left-handed: state `hand = \"left\"` in a job that names its `.tool` file",
             ),
-            Note::Contradiction { first, second, taken } => write!(
+            Note::Contradiction { first, second, taken, is_narrower: _ } => write!(
                 f,
                 "the {} is {}, but the {} is {}; taken: the {taken}",
                 first.what,
@@ -361,6 +364,7 @@ impl Entry {
                     value: cutter.whole_pitches(pitch),
                 },
                 taken: "teeth that fit",
+                is_narrower: true,
             });
         }
         if let Shape::Face { half_angle: 0.0, max_diameter, .. } = cutter.shape
@@ -383,6 +387,7 @@ impl Entry {
                 first: Stated { what: "diameter", value: cutter.diameter },
                 second: Stated { what: "diameter at the end of the flutes", value: width },
                 taken: "radii and the flute length",
+                is_narrower: width < cutter.diameter,
             });
         }
         if self.left_handed == Some(true) {

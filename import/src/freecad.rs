@@ -225,6 +225,7 @@ fn cutter(stated: &str, of: &Parameters<'_>, notes: &mut Vec<Note>) -> Result<Cu
                         value: super::outline::rounded(wide),
                     },
                     taken: "cone",
+                    is_narrower: wide < diameter,
                 });
             }
             (Shape::Cone { tip_diameter, half_angle }, flutes()?)
@@ -359,7 +360,10 @@ fn add_contradiction(
     taken: &'static str,
 ) {
     if (first.value - value).abs() > 0.01 * value {
-        notes.push(Note::Contradiction { first, second: Stated { what, value }, taken });
+        // Of heights, the lower one is drawn with less of the cutter.
+        let is_narrower = value < first.value;
+        let second = Stated { what, value };
+        notes.push(Note::Contradiction { first, second, taken, is_narrower });
     }
 }
 

@@ -5,7 +5,7 @@
 //! the shank, `SIG` a whole angle, `TA` the angle between the axis and a side.
 
 use super::entry::{Entry, Holder, Note, Section, Stated};
-use super::json::{Object, number, number_of, object, pair, string, truth};
+use super::json::{Object, number, object, pair, string, truth};
 use super::shape::{Crest, Cutter, FormSegment, Shape, ShapeError};
 use super::{Found, Problem};
 use serde_json::Value;
@@ -60,6 +60,7 @@ fn read_tool(tool: &Object, kind: &str, title: &str) -> Result<Entry, String> {
                 value: last.upper_diameter,
             },
             taken: "shaft's segments",
+            is_narrower: last.upper_diameter < shank,
         });
     }
     if let Some(value) = object(tool, "holder")? {
@@ -70,10 +71,9 @@ fn read_tool(tool: &Object, kind: &str, title: &str) -> Result<Entry, String> {
         };
         // Without it nothing says where the holder begins.
         entry.stickout = Some(geometry.require("LB", "length below the holder")?);
-        let gauge = number_of(value, "gaugeLength");
         let stated = geometry.get("assemblyGaugeLength")?;
-        if let (Some(stickout), Some(gauge), Some(stated)) = (entry.stickout, gauge, stated) {
-            let sum = stickout + gauge * holder.unit.factor_to(unit);
+        if let (Some(stickout), Some(stated)) = (entry.stickout, stated) {
+            let sum = stickout + gauge_length(value, &holder)? * holder.unit.factor_to(unit);
             if stated > 0.0 && (sum - stated).abs() > 1e-4 * sum.abs() {
                 entry.notes.push(Note::GaugeLength { stated, sum });
             }
@@ -81,6 +81,64 @@ fn read_tool(tool: &Object, kind: &str, title: &str) -> Result<Entry, String> {
         entry.holder = Some(holder);
     }
     Ok(entry)
+}
+
+/// Returns the gauge length of a holder in its unit. Where none is stated, Fusion 360 takes the height of the segments.
+fn gauge_length(value: &Object, holder: &Holder) -> Result<f64, String> {
+    match value.get("gaugeLength") {
+        None | Some(Value::Null) => Ok(holder.sections.iter().map(|section| section.height).sum()),
+        Some(stated) => Quantity::read(stated)
+            .and_then(|quantity| quantity.to(holder.unit))
+            .ok_or_else(|| format!("its holder: its `gaugeLength` is {stated}, no length")),
+    }
+}
+
+/// A number of a library with the text of its unit.
+struct Quantity {
+    number: f64,
+    unit: String,
+}
+
+impl Quantity {
+    /// Reads a number, alone or as a text with a unit; `None` for a formula.
+    fn read(value: &Value) -> Option<Quantity> {
+        if let Some(number) = value.as_f64() {
+            return Some(Quantity { number, unit: String::new() });
+        }
+        let text = value.as_str()?.trim();
+        let quoted = [('"', '"'), ('\'', '\''), ('(', ')')];
+        let inner = quoted
+            .into_iter()
+            .find_map(|(open, close)| text.strip_prefix(open)?.strip_suffix(close));
+        let text = inner.unwrap_or(text).trim();
+        let number = text.trim_end_matches(|c: char| c.is_alphabetic() || "\"'°".contains(c));
+        let unit = text[number.len()..].to_lowercase();
+        // A comma is the decimal sign of some languages.
+        let number = number
+            .trim()
+            .replace(',', ".")
+            .parse()
+            .ok()
+            .filter(|number: &f64| number.is_finite())?;
+        Some(Quantity { number, unit })
+    }
+
+    /// Returns a length in a unit, or an angle in degrees; `None` if its unit is not known.
+    fn to(&self, unit: Unit) -> Option<f64> {
+        let millimetres = |length: f64| length * Unit::Millimetre.factor_to(unit);
+        let factor = match &*self.unit {
+            "" | "deg" | "degree" | "degrees" | "°" => 1.0,
+            "rad" | "radian" | "radians" => 1_f64.to_degrees(),
+            "mm" | "millimeter" | "millimeters" | "millimetre" | "millimetres" => millimetres(1.0),
+            "cm" | "centimeter" | "centimeters" | "centimetre" | "centimetres" => millimetres(10.0),
+            "m" | "meter" | "meters" | "metre" | "metres" => millimetres(1000.0),
+            "um" | "µm" | "μm" | "micron" | "microns" => millimetres(1e-3),
+            "in" | "inch" | "inches" | "\"" => Unit::Inch.factor_to(unit),
+            "ft" | "foot" | "feet" | "'" => 12.0 * Unit::Inch.factor_to(unit),
+            _ => return None,
+        };
+        Some(self.number * factor)
+    }
 }
 
 /// The expressions of dimensions, from which Fusion 360 computes them anew when it reads the library.
@@ -108,21 +166,13 @@ fn contradicted_expressions(
     let mut notes = Vec::new();
     let Some(expressions) = object(tool, "expressions")? else { return Ok(notes) };
     for (expression, key, what) in EXPRESSIONS {
-        let text = string(expressions, expression);
-        let (number, of) = match text.find(|c: char| c.is_ascii_alphabetic()) {
-            Some(at) => text.split_at(at),
-            None => (text, ""),
-        };
-        let factor = match of {
-            "mm" => Unit::Millimetre.factor_to(unit),
-            "in" => Unit::Inch.factor_to(unit),
-            "" | "deg" | "degrees" => 1.0,
-            _ => continue,
-        };
-        let (Ok(value), Some(stated)) = (number.trim().parse::<f64>(), geometry.get(key)?) else {
+        let stated = geometry.get(key)?;
+        let quantity = expressions.get(expression).and_then(Quantity::read);
+        let (Some(value), Some(stated)) = (quantity.and_then(|found| found.to(unit)), stated)
+        else {
             continue;
         };
-        let value = super::outline::rounded(value * factor);
+        let value = super::outline::rounded(value);
         if (value - stated).abs() > 1e-4 * stated.abs() {
             notes.push(Note::OtherExpression {
                 stated: Stated { what, value: stated },
@@ -154,6 +204,7 @@ fn cutter(
                     first: Stated { what: "corner radius", value: radius },
                     second: Stated { what: "diameter", value: diameter },
                     taken: "diameter",
+                    is_narrower: diameter < 2.0 * radius,
                 });
             }
             Shape::Ball
@@ -335,6 +386,8 @@ fn pitch(geometry: &Geometry<'_>, teeth: u32, notes: &mut Vec<Note>) -> Result<f
                     first: Stated { what: "thread pitch", value: other },
                     second: Stated { what: "least and greatest pitch", value: greatest },
                     taken: "latter",
+                    // A smaller pitch leaves wider roots, and a greater one wider teeth.
+                    is_narrower: true,
                 });
             }
             greatest

@@ -350,13 +350,32 @@ fn json_tools(text: &str) -> Result<Vec<Found>, String> {
         .collect())
 }
 
-/// Returns the JSON file of an archive.
+/// Returns the number of files that a ZIP archive states in its end record (APPNOTE 4.3.16), unless that is in the record of a larger archive.
+fn files_of_archive(content: &[u8]) -> Option<usize> {
+    let at = content.windows(4).rposition(|bytes| bytes == b"PK\x05\x06")?;
+    let count = content.get(at + 10..at + 12)?;
+    let count = u16::from_le_bytes([count[0], count[1]]);
+    (count != u16::MAX).then_some(usize::from(count))
+}
+
+/// Returns the JSON file of an archive, which has one.
 fn unzipped(content: &[u8]) -> Result<String, String> {
     let mut archive =
         zip::ZipArchive::new(std::io::Cursor::new(content)).map_err(|error| error.to_string())?;
-    let json = (0..archive.len())
-        .find(|k| archive.name_for_index(*k).is_some_and(|name| name.ends_with(".json")))
-        .ok_or("the archive has no `.json` file")?;
+    // Of files with one name the reader keeps the last.
+    if files_of_archive(content).is_some_and(|count| count != archive.len()) {
+        return Err("the archive has two files of one name".to_owned());
+    }
+    let named = |k: &usize| archive.name_for_index(*k).unwrap_or_default().ends_with(".json");
+    let found: Vec<usize> = (0..archive.len()).filter(named).collect();
+    let [json] = found[..] else {
+        return Err(match found.len() {
+            0 => "the archive has no `.json` file".to_owned(),
+            count => {
+                format!("the archive has {count} `.json` files, of which each is a library")
+            }
+        });
+    };
     let file = archive.by_index(json).map_err(|error| error.to_string())?;
     let mut content = Vec::new();
     let max_bytes = FileKind::Library.max_bytes();

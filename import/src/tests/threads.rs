@@ -226,6 +226,7 @@ fn teeth_that_do_not_fit_the_flutes_are_noted() {
         first: Stated { what: "number of teeth", value: 3.0 },
         second: Stated { what: "number of pitches in the flute length", value: fit },
         taken: "teeth that fit",
+        is_narrower: true,
     };
     assert_eq!(notes(&mill(&json!({ "NT": 3 }))), [taken(2.0)]);
     let flat = json!({ "NT": 3, "LCF": 1.5, "thread-tip-type": "flat", "thread-tip-width": 0.4 });

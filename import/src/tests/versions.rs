@@ -66,6 +66,21 @@ fn an_expression_of_another_length_is_noted() {
     assert_eq!(notes(same), []);
     let other = notes(json!({ "tool_diameter": "0.5in" }));
     assert!(matches!(&other[..], [Note::OtherExpression { expression: 12.7, .. }]), "{other:?}");
+    // A plain length has a unit in letters of any case, an exponent, a comma, quotes, or is a number.
+    for length in [
+        json!("2 cm"),
+        json!("20 MM"),
+        json!("2e1 mm"),
+        json!("20,0 mm"),
+        json!("'20 mm'"),
+        json!("(20 mm)"),
+        json!("0.02 meters"),
+        json!(20),
+    ] {
+        let other = notes(json!({ "tool_diameter": length }));
+        assert!(matches!(&other[..], [Note::OtherExpression { expression: 20.0, .. }]), "{length}");
+    }
+    assert_eq!(notes(json!({ "tool_diameter": "1 cm", "tool_fluteLength": "20 mm * 2" })), []);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use serde_json::{Map, Value, json};
 use std::ffi::OsStr;
+use std::io::Write as _;
 use std::path::Path;
 use touchoff_import::{FindError, ImportedTool, Library, find_in_folder, write_numbers};
 use touchoff_tests::fusion;
@@ -235,4 +236,67 @@ fn doubts_and_hands_of_tools_are_told() {
         ))
     };
     assert_eq!([60, 80, 100].map(|length| gauge(length).1.len()), [1, 0, 0]);
+    // That of the holder can be a text with a unit, or follows from its segments.
+    let holder = |gauge: &str| {
+        fusion(&format!(
+            ", \"assemblyGaugeLength\": 60}}, \"holder\": {{\"unit\": \"millimeters\"{gauge}, \"segments\": \
+             [{{\"height\": 40, \"lower-diameter\": 30, \"upper-diameter\": 30}}]}}, \"x\": {{\"y\": 1"
+        ))
+        .1
+        .len()
+    };
+    let gauges = ["", ", \"gaugeLength\": \"40 mm\"", ", \"gaugeLength\": \"2 cm\""];
+    assert_eq!(gauges.map(holder), [1, 1, 0]);
+    let assembly = "<holder guid=\"h\"><section diameter=\"40\" length=\"30\"/></holder>";
+    assert_eq!(hsm("", assembly).1.len(), 0);
+    let short = hsm("<body assembly-gauge-length=\"60\"/>", assembly);
+    assert_eq!(short.1.len(), 1, "{short:?}");
+    // Of two statements, the one that gives the narrower tool can be the wrong one.
+    let ball = |radius: u32| {
+        let text = format!(
+            "{{\"data\": [{{\"type\": \"ball end mill\", \"unit\": \"millimeters\", \"geometry\": {{\"DC\": 6, \"RE\": {radius}, \
+             \"LCF\": 20, \"OAL\": 70, \"SFDM\": 6}}}}]}}"
+        );
+        of("l.json", &text).1.len()
+    };
+    assert_eq!([2, 3, 5].map(ball), [0, 0, 1]);
+    let chamfer = |height: &str| {
+        let text = format!(
+            "{{\"shape\": \"chamfer.fcstd\", \"parameter\": {{\"CuttingEdgeHeight\": \"{height}\", \"Length\": \"80 mm\", \
+             \"ShankDiameter\": \"6 mm\", \"Diameter\": \"10 mm\", \"CuttingEdgeAngle\": \"60 deg\", \"TipDiameter\": \"1 mm\"}}}}"
+        );
+        of("c.fctb", &text).1.len()
+    };
+    assert_eq!(["5 mm", "7.794 mm", "9 mm"].map(chamfer), [1, 0, 0]);
+}
+
+/// One of two libraries is dropped otherwise.
+#[test]
+fn an_archive_has_one_library() {
+    let packed = |names: &[&str]| {
+        let mut archive = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+        for name in names {
+            let options = zip::write::SimpleFileOptions::default();
+            archive.start_file(*name, options).expect("an entry");
+            archive.write_all(br#"{"data": []}"#).expect("an archive");
+        }
+        let content = archive.finish().expect("an archive").into_inner();
+        Library::parse(Path::new("l.tools"), &content)
+    };
+    assert!(packed(&["tools.json", "picture.png"]).is_ok());
+    let error = packed(&["a.json", "b.json"]).expect_err("two libraries").to_string();
+    assert!(error.contains("2 `.json` files"), "{error}");
+    // The second name is changed to the first one, which writers do not do.
+    let mut archive = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+    for name in ["tools.json", "tuuls.json"] {
+        let options = zip::write::SimpleFileOptions::default();
+        archive.start_file(name, options).expect("an entry");
+        archive.write_all(br#"{"data": []}"#).expect("an archive");
+    }
+    let mut content = archive.finish().expect("an archive").into_inner();
+    while let Some(at) = content.windows(5).position(|bytes| bytes == b"tuuls") {
+        content[at..at + 5].copy_from_slice(b"tools");
+    }
+    let error = Library::parse(Path::new("l.tools"), &content).expect_err("one name").to_string();
+    assert!(error.contains("two files of one name"), "{error}");
 }

@@ -318,11 +318,23 @@ fn without_counts(text: &str) -> String {
     kept.join(" ")
 }
 
-/// Returns the length of the last `DIA` or `DIAMETER` that is not the number of an offset: after it, or before it where none follows; or
-/// that of `D6.` with its point.
+/// Words beside a diameter that is not the cutter's: of other pieces of the tool, of what it makes and of its path, and of offsets.
+#[rustfmt::skip]
+const OTHERS: [&str; 21] = [
+    "SHANK", "SHAFT", "HOLDER", "COLLET", "CHUCK", "ARBOR", "HUB", "FLANGE", "NECK", "BODY", "TIP", "PILOT", "THREAD", "STOCK",
+    "BORE", "MIN", "RAMP", "RAMPING", "HELIX", "OFFSET", "OFF",
+];
+
+fn is_other(word: Option<&str>) -> bool {
+    word.is_some_and(|word| OTHERS.contains(&word.trim_end_matches(['.', ':', '='])))
+}
+
+/// Returns the length of the last `DIA` or `DIAMETER` that is the cutter's: after it, or before it where none follows; or that of `D6.` with
+/// its point.
 fn diameter(text: &str) -> Option<Measure> {
     let named = text.match_indices("DIA").filter(|(at, _)| begins_word(text, *at));
     let named = named.filter_map(|(at, key)| {
+        let (before, owner) = last_measure_of(&text[..at]);
         let rest = &text[at + key.len()..];
         let rest = rest.strip_prefix("METER").or(rest.strip_prefix('M')).unwrap_or(rest);
         let rest = rest.trim_start_matches('.').trim_start();
@@ -331,23 +343,40 @@ fn diameter(text: &str) -> Option<Measure> {
             Some(rest) => (true, rest),
             None => (false, rest),
         };
-        let before = last_word_measure(&text[..at]).filter(|_| !is_joined && !is_offset);
-        before.or_else(|| measure(rest).map(|found| found.0))
+        let (after, behind) = match measure(rest) {
+            Some((found, behind)) => (Some(found), behind),
+            None => (None, rest),
+        };
+        // `SHANK DIA 12` and `12 DIA SHANK`, but neither `SHANK 12 DIA 10` nor `DIA 10 SHANK 12`.
+        if before.is_none() && is_other(owner) || ends_with_other(behind) {
+            return None;
+        }
+        before.filter(|_| !is_joined && !is_offset && !is_other(owner)).or(after)
     });
     named.last().or_else(|| pointed(text, 'D'))
 }
 
-/// Returns the length that a text ends with: `10MM`, `.500`, `10 MM`.
-fn last_word_measure(text: &str) -> Option<Measure> {
+/// Returns whether a text begins with one of [`OTHERS`] that has no length of its own.
+fn ends_with_other(text: &str) -> bool {
+    let mut words = text.split_whitespace().skip_while(|word| *word == "OF");
+    is_other(words.next())
+        && !words.next().is_some_and(|next| next.starts_with("DIA") || number_in(next).is_some())
+}
+
+/// Returns the length that a text ends with, `10MM`, `.500` or `10 MM`, and the word before it.
+fn last_measure_of(text: &str) -> (Option<Measure>, Option<&str>) {
     let mut words = text.split_whitespace().rev();
-    let last = words.next()?;
-    let (unit, number) = match last {
-        "MM" => (Some(Unit::Millimetre), words.next()?),
-        "IN" | "INCH" => (Some(Unit::Inch), words.next()?),
-        _ => (None, last),
+    let last = words.next();
+    let unit = match last {
+        Some("MM") => Some(Unit::Millimetre),
+        Some("IN" | "INCH") => Some(Unit::Inch),
+        _ => None,
     };
-    let ((value, own), rest) = measure(number)?;
-    rest.is_empty().then_some((value, own.or(unit)))
+    let number = if unit.is_some() { words.next() } else { last };
+    match number.and_then(measure).filter(|(_, rest)| rest.is_empty()) {
+        Some(((value, own), _)) => (Some((value, own.or(unit))), words.next()),
+        None => (None, last),
+    }
 }
 
 /// Returns the length of a word of a letter and a number with a decimal point, as the numbers of offsets have none.
@@ -510,6 +539,16 @@ mod tests {
             ("(T1 ENDMILL DIA 10 FLUTES 4)", (1, 10.0, None, Unnamed)),
             ("(T1 ENDMILL DIA. 16. FL 30 OAL 72)", (1, 16.0, None, Unnamed)),
             ("(T1 DRILL DIA 10 MM DEG 118)", (1, 10.0, None, Other)),
+            // Nor are those of other pieces of the tool, of its path and of offsets.
+            ("(T1 10MM ENDMILL, SHANK DIA 12)", (1, 10.0, None, Unnamed)),
+            ("(T1 10MM ENDMILL, HOLDER DIA. 40)", (1, 10.0, None, Unnamed)),
+            ("(T1 10MM END MILL - BORE DIA 30)", (1, 10.0, None, Unnamed)),
+            ("(T1 10MM ENDMILL - RAMP DIAMETER 20)", (1, 10.0, None, Unnamed)),
+            ("(T1 10MM ENDMILL 12 MM DIA SHANK)", (1, 10.0, None, Unnamed)),
+            ("(T1 DIAMETER OFFSET 21 DIAMETER 10)", (1, 10.0, None, Other)),
+            ("(T1 ENDMILL SHANK 12 DIA 10)", (1, 10.0, None, Unnamed)),
+            ("(T1 ENDMILL DIA 10 SHANK 12)", (1, 10.0, None, Unnamed)),
+            ("(T1 ENDMILL 10 DIA, SHANK DIA 12)", (1, 10.0, None, Unnamed)),
             // The size of what the tool makes is another one.
             ("(T3 DRILL DIA 6.8 FOR M8 HOLES DIA 8)", (3, 6.8, None, Other)),
             ("(T1 | 6MM DRILL FOR HOLES | H1 | TOOL DIA. - 6.)", (1, 6.0, None, Other)),
@@ -553,6 +592,7 @@ mod tests {
             "(T1 D=0. CR=0.)",
             "(1 = Profile 2)",
             "(1 = Engraving {30 deg 0.5 mm Tip})",
+            "(T1 ENDMILL 10MM, MIN DIA 9.98)",
             "(T3|NO. 7 DRILL|H3|D3)",
             "(T1 1/4-20 TAP)",
             "(T1 DRILLS DIA 8 HOLES)",

@@ -83,6 +83,7 @@ pub use interpreter::Interpreter;
 pub use iso::ExpressionFault;
 pub use note::{NoteKind, ProgramNote};
 pub use rules::{Choice, ControlError, ControlFault, ControlRules, GENERIC, Rule};
+pub(crate) use sinumerik::is_word as is_word_of_sinumerik;
 pub(crate) use state::about;
 pub use state::{ControlState, Frame, LengthOffset, Position, Rotation, Tcp, WorkOffset};
 pub use survey::Survey;

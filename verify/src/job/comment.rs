@@ -3,6 +3,7 @@
 use super::{Job, JobGap};
 use crate::Gap;
 use crate::gcode::{StatedEnd, StatedTool};
+use crate::program::cutting_radii;
 use std::collections::{BTreeMap, BTreeSet};
 use touchoff::Unit;
 use touchoff::tool::{ProfileSegment, ToolInfo};
@@ -57,18 +58,7 @@ fn contradiction(stated: &StatedTool, info: &ToolInfo, unit: Unit) -> Option<Str
     let tolerance = ROUNDED * stated.diameter;
     let is_near = |one: f64, other: f64| (one - other).abs() <= tolerance;
     let points = || cutting.iter().flat_map(|segment| [segment.from, segment.to]);
-    // An arc beyond its middle, as of a lollipop mill, is wider than its ends.
-    let middles = || {
-        cutting.iter().filter_map(|segment| {
-            let circle = segment.circle.filter(|circle| circle.convex)?;
-            let [low, high] =
-                [segment.from[1].min(segment.to[1]), segment.from[1].max(segment.to[1])];
-            let has_middle = (low..=high).contains(&circle.centre[1]);
-            has_middle.then_some(circle.centre[0] + circle.radius)
-        })
-    };
-    let radii = || points().map(|[radius, _]| radius).chain(middles());
-    let diameters = || radii().map(|radius| 2.0 * scale * radius);
+    let diameters = || cutting_radii(info).map(|radius| 2.0 * scale * radius);
     let widest = diameters().fold(0.0, f64::max);
     let rounded = || {
         let circles = cutting.iter().filter_map(|segment| segment.circle);

@@ -8,7 +8,7 @@
 //! One of the last two, or CATIA's `END`, has to end the program, so that a truncated file is never taken for a whole one. `$$`
 //! opens a comment, a trailing `$` continues the statement, `;` separates two statements, and case does not
 //! matter. Two comments state the frame of the positions, which may be repeated and not changed: CATIA's machining axis and
-//! Creo's coordinate system. Creo states several positions on an arc after one `CIRCLE`.
+//! Creo's coordinate system. Creo states its cutter, and whether positions are those of the contour, in comments, too. Creo states several positions on an arc after one `CIRCLE`.
 //!
 //! Statements about the tool hold for the positions that follow them: `LOADTL` between two positions changes the tool,
 //! and the cutters stated before or after it, up to the next position, are those of the new one. In NX's files,
@@ -20,10 +20,12 @@
 
 mod cycle;
 
+use super::cutter::{Stated, StatedCutter};
 use super::{
     CutterLocation, Faults, Located, ProgramFault, Tape, Tapes, axis_pose, lines, number, shown,
 };
-use cycle::{Arc, Cycle, Stop};
+use crate::gcode::is_word_of_sinumerik;
+use cycle::{Arc, Cycle, Normals, Stop};
 use nalgebra::Vector3;
 use std::collections::{BTreeMap, HashSet};
 use std::mem;
@@ -38,14 +40,30 @@ const UPRIGHT: [f64; 3] = [0.0, 0.0, 1.0];
 /// The comment with which CATIA writes the machining axis.
 const CATIA_AXIS: &str = "$$*CATIA0";
 
-/// The comment with which Creo begins its coordinate system. Rows of numbers may follow.
-const CREO_SYSTEM: &str = "$$-> CSYS";
-
-/// The comment with which Creo says whether positions are those of the tool's centre or of the contour.
-const CREO_CONTOUR: &str = "$$-> CUTCOM_GEOMETRY_TYPE";
-
 /// The beginning of Creo's comments.
 const CREO_COMMENT: &str = "$$->";
+
+/// The words of Creo's comments that are read: the coordinate system, whether positions are those of the tool's centre or of the contour,
+/// and the cutter.
+const CREO_SYSTEM: &str = "$$-> CSYS";
+const CREO_CONTOUR: &str = "$$-> CUTCOM_GEOMETRY_TYPE";
+const CREO_CUTTER: &str = "$$-> CUTTER";
+
+/// Returns the word of a comment of Creo that is read, and its arguments.
+fn creo_comment(line: &str) -> Option<CreoComment<'_>> {
+    let (name, arguments) = line.strip_prefix(CREO_COMMENT)?.split_once('/')?;
+    let known = [CREO_SYSTEM, CREO_CONTOUR, CREO_CUTTER];
+    let is_named =
+        |word: &&str| word[CREO_COMMENT.len()..].trim().eq_ignore_ascii_case(name.trim());
+    let word = known.into_iter().find(is_named)?;
+    Some(CreoComment { word, arguments: arguments.trim().trim_end_matches('$').trim_end() })
+}
+
+/// A comment of Creo that is read.
+struct CreoComment<'a> {
+    word: &'static str,
+    arguments: &'a str,
+}
 
 /// Reads an APT-CL program. All statements that are refused are found, each fault once.
 pub(super) fn read(text: &str) -> Result<Tapes, Faults> {
@@ -70,8 +88,9 @@ pub(super) fn read(text: &str) -> Result<Tapes, Faults> {
     if reader.arc.is_some() {
         refuse((end, ProgramFault::Arc { what: "ends at no position" }));
     }
-    if let Some(line) = reader.either_way.filter(|_| reader.turns_about_normals != Some(true)) {
-        let what = "of half a turn fits both directions, and no other arc tells that the file's normals state them";
+    if let Some(line) = reader.normals.ambiguous() {
+        let what =
+            "fits both directions, and no clockwise arc tells that the file's normals state them";
         refuse((line, ProgramFault::Arc { what }));
     }
     // A file without positions is refused as such, whether it ends or not.
@@ -114,17 +133,17 @@ fn statements(text: &str) -> (Vec<(usize, String)>, Option<usize>) {
     let mut open: Option<(usize, String)> = None;
     let mut lines = lines(text).peekable();
     while let Some((line, raw)) = lines.next() {
-        if raw.starts_with(CREO_SYSTEM) {
-            // Rows may be comments or not, and end in `$` or not.
-            let mut system = raw.trim_end_matches('$').to_owned();
+        if let Some(CreoComment { word, arguments }) = creo_comment(raw) {
+            // Rows of numbers may follow. They may be comments or not, and end in `$` or not.
+            let mut statement = format!("{word} / {arguments}");
             while let Some(row) = lines.peek().and_then(|(_, row)| numbers_of(row)) {
-                system = format!("{system}, {row}");
+                statement = format!("{statement}, {row}");
                 lines.next();
             }
-            statements.push((line, system));
+            statements.push((line, statement));
             continue;
         }
-        if open.is_none() && (is_prose(raw) || raw.starts_with(CREO_CONTOUR)) {
+        if open.is_none() && is_prose(raw) {
             statements.push((line, raw.to_owned()));
             continue;
         }
@@ -172,17 +191,15 @@ struct Reader {
     is_creo: bool,
     /// The arc that the last statement ended.
     ended_arc: Option<Arc>,
-    /// Direction of the arcs, as far as their angles tell, `true` if all turn about their normals: older post processors state one normal for both
-    /// directions.
-    turns_about_normals: Option<bool>,
-    /// The line of the first arc whose angle is that of both directions.
-    either_way: Option<usize>,
+    normals: Normals,
     /// Number of chords of all arcs.
     chords: usize,
     /// The direction in which CATIA's next arc begins.
     direction: Option<Vector3<f64>>,
     /// Set where Creo's positions are those of the contour.
     is_contour: bool,
+    /// The arguments of `CUTCOM` in force, by which the control corrects the tool.
+    compensation: Option<String>,
     /// The cycle at each position.
     cycle: Option<Cycle>,
     /// Set once there was a `GOTO`.
@@ -208,8 +225,7 @@ struct ToolStatement {
     line: usize,
     word: String,
     arguments: Vec<String>,
-    /// The cutter that it states, as arguments of `CUTTER`.
-    cutter: Option<Vec<f64>>,
+    cutter: Option<StatedCutter>,
 }
 
 impl Reader {
@@ -242,7 +258,7 @@ impl Reader {
         }
         if word == CREO_CONTOUR {
             self.is_contour = rest.eq_ignore_ascii_case("OUTPUT_ON_PROFILE");
-            return Ok(());
+            return self.check_contour();
         }
         let ended = self.finished || self.path_ended && !matches!(word, "FINI" | "TOOL PATH");
         if ended && !is_prose(text) {
@@ -276,9 +292,11 @@ impl Reader {
                 self.direction = Some(Vector3::new(i, j, k));
             }
             "TLON,GOFWD" => self.catia_arc(line, rest)?,
-            "CUTCOM" if self.is_contour && !rest.eq_ignore_ascii_case("OFF") => {
-                let argument = format!("{}, with OUTPUT_ON_PROFILE,", unquoted(rest));
-                return Err(ProgramFault::Compensation { argument });
+            "CUTCOM" => {
+                self.compensation =
+                    Some(rest.to_owned()).filter(|word| !word.eq_ignore_ascii_case("OFF"));
+                self.check_contour()?;
+                self.other(line, text, word, rest)?;
             }
             "CYCLE" => {
                 self.cycle = Cycle::read(rest, self.cycle.as_ref())?;
@@ -298,7 +316,7 @@ impl Reader {
             "RAPID" if rest.is_empty() => self.rapid = true,
             "MULTAX" => self.multax(rest)?,
             "UNITS" => self.units(line, rest)?,
-            "LOADTL" | "TOOLNO" | "CUTTER" | "TLDATA" | "TOOL PATH" => {
+            "LOADTL" | "TOOLNO" | "CUTTER" | "TLDATA" | "TOOL PATH" | CREO_CUTTER => {
                 refuse_motions(word, rest)?;
                 // Only NX has it, whose positions without an axis keep the last one.
                 self.is_nx |= word == "TOOL PATH";
@@ -307,7 +325,7 @@ impl Reader {
                     self.several.get_or_insert((line, after));
                 }
                 let statement = tool_statement(line, word, rest)?;
-                if word != "CUTTER" {
+                if !matches!(word, "CUTTER" | CREO_CUTTER) {
                     self.tape.ignored.push((line, word.to_owned()));
                 }
                 self.pending.push(statement);
@@ -321,6 +339,17 @@ impl Reader {
             other => self.other(line, text, other, rest)?,
         }
         Ok(())
+    }
+
+    /// Refuses positions of the contour which the control corrects by the whole radius of the tool.
+    fn check_contour(&self) -> Result<(), ProgramFault> {
+        match &self.compensation {
+            Some(argument) if self.is_contour => {
+                let argument = format!("{}, with OUTPUT_ON_PROFILE,", unquoted(argument));
+                Err(ProgramFault::Compensation { argument })
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Reads a position. One that is the last of the file and cannot be read was truncated.
@@ -337,18 +366,18 @@ impl Reader {
                 let before = self.tape.locations.last().map(|location| location.pose);
                 let unit = self.tape.unit.map(|(unit, _)| unit);
                 let ended_arc = self.ended_arc.take().filter(|_| self.is_creo && !rapid);
-                let further = || ended_arc?.continued(&before?, &pose, unit);
-                let stops = match (self.arc.take().or_else(further), &self.cycle) {
+                let mut arc = self.arc.take();
+                if let (None, Some(ended), Some(before)) = (arc, ended_arc, &before) {
+                    arc = ended.continued(before, &pose, unit)?;
+                }
+                let stops = match (arc, &self.cycle) {
                     (Some(stated), None) => {
                         let (poses, arc) =
                             stated.stops(before.as_ref(), &pose, unit, self.chords)?;
-                        let is_of_both = |before| stated.fits_both_ways(&before, &pose);
-                        if before.is_some_and(is_of_both) {
-                            self.either_way.get_or_insert(line);
-                        } else if arc.states_angle() {
-                            let about = self.turns_about_normals.unwrap_or(true);
-                            self.turns_about_normals = Some(about && !arc.is_reversed(&stated));
+                        if let Some(before) = &before {
+                            self.normals.add(line, &stated, &arc, [before, &pose]);
                         }
+                        self.keep_unscaled_arc(line);
                         self.chords += poses.len();
                         self.ended_arc = Some(arc);
                         poses.into_iter().map(|pose| Stop { pose, rapid }).collect()
@@ -364,6 +393,13 @@ impl Reader {
             }
             Err(_) if is_last => Err(ProgramFault::Unfinished),
             Err(fault) => Err(fault),
+        }
+    }
+
+    /// Keeps the line of the first arc that is divided into chords without a stated unit.
+    fn keep_unscaled_arc(&mut self, line: usize) {
+        if self.tape.unit.is_none() {
+            self.tape.unscaled_arc.get_or_insert(line);
         }
     }
 
@@ -384,6 +420,7 @@ impl Reader {
         let (arc, end) = Arc::catia(rest, &before, direction)?;
         let unit = self.tape.unit.map(|(unit, _)| unit);
         let (poses, _) = arc.stops(Some(&before), &end, unit, self.chords)?;
+        self.keep_unscaled_arc(line);
         self.chords += poses.len();
         self.add(line, poses.into_iter().map(|pose| Stop { pose, rapid }).collect());
         Ok(())
@@ -497,7 +534,7 @@ impl Reader {
                 return Err(fault);
             }
             let ToolStatement { line, word, arguments, cutter } = statement;
-            self.tape.cutters.extend(cutter.map(|cutter| (line, cutter)));
+            self.tape.cutters.extend(cutter);
             self.tool.insert(word, (line, arguments));
         }
         Ok(())
@@ -537,17 +574,31 @@ fn tool_statement(line: usize, word: &str, rest: &str) -> Result<ToolStatement, 
     }
     let numbers =
         |parts: &[String]| parts.iter().map(|part| number(part)).collect::<Result<Vec<f64>, _>>();
-    let cutter = match (word, &arguments[..]) {
-        ("CUTTER", arguments) => Some(numbers(arguments)?),
+    let stated = match (word, &arguments[..]) {
+        ("CUTTER", arguments) => Some(Stated::Form(numbers(arguments)?)),
+        // Creo leaves the corner out, whatever it is.
+        (CREO_CUTTER, [diameter]) => Some(Stated::Diameter(number(diameter)?)),
+        (CREO_CUTTER, arguments) => Some(Stated::Form(numbers(arguments)?)),
         // NX writes a mill as diameter, corner, height, and the angles of side and end.
         ("TLDATA", [kind, diameter, corner, others @ ..]) if kind == "MILL" => {
             let (diameter, corner) = (number(diameter)?, number(corner)?);
             let angle = |at: usize| others.get(at).map_or(Ok(0.0), |angle| number(angle));
             let (side, end) = (angle(1)?, angle(2)?);
-            Some(vec![diameter, corner, 0.5 * diameter - corner, corner, end, side])
+            let centre = 0.5 * diameter - corner;
+            Some(Stated::Form(vec![diameter, corner, centre, corner, end, side]))
         }
+        ("TLDATA", [kind, _, diameter, ..]) if kind == "DRILL" && arguments[1] == "MILL" => {
+            Some(Stated::Diameter(number(diameter)?))
+        }
+        ("TLDATA", [kind, diameter, ..])
+            if ["DRILL", "TCUTTER", "MILL"].contains(&kind.as_str()) =>
+        {
+            Some(number(diameter).map_or(Stated::Other, Stated::Diameter))
+        }
+        ("TLDATA", _) => Some(Stated::Other),
         _ => None,
     };
+    let cutter = stated.map(|stated| StatedCutter { line, stated });
     Ok(ToolStatement { line, word: word.to_owned(), arguments, cutter })
 }
 
@@ -606,6 +657,9 @@ const IGNORED_WORDS: [&str; 36] = [
     "CLEARP", "CLRSRF", "SELCTL", "PAINT", "DISPLY", "PLOT", "NOPLOT", "NOPOST", "VERIFY", "AUTOPS",
 ];
 
+/// Settings of SolidWorks CAM about tools. Others of its words could turn the table or change the frame.
+const CSI_WORDS: [&str; 3] = ["CSI_TOOL", "CSI_SET_FLUTE_LENGTH", "CSI_SET_EXTENSION_LENGTH"];
+
 /// Words that move the tool, or decide whether and how often it moves.
 #[rustfmt::skip]
 const MOTION_WORDS: [&str; 49] = [
@@ -649,13 +703,13 @@ fn skip_statement(word: &str, arguments: &str) -> Result<String, ProgramFault> {
     }
     if let Some(verbatim) = VERBATIM_WORDS.iter().find(|verbatim| word.starts_with(**verbatim)) {
         let text = format!("{} {}", &word[verbatim.len()..], arguments.to_ascii_uppercase());
-        return match could_move(text.trim()) {
-            true => Err(ProgramFault::Verbatim { word: (*verbatim).to_owned() }),
-            false => Ok((*verbatim).to_owned()),
+        return match moves_nothing(&text) {
+            true => Ok((*verbatim).to_owned()),
+            false => Err(ProgramFault::Verbatim { word: (*verbatim).to_owned() }),
         };
     }
-    // Settings of SolidWorks CAM about tools, and names of CATIA's.
-    if word.starts_with("CSI_") || word == "TPRINT" {
+    // Settings about tools, and names of CATIA's.
+    if CSI_WORDS.contains(&word) || word == "TPRINT" {
         refuse_motions(word, &arguments.replace('/', " "))?;
         return Ok(word.to_owned());
     }
@@ -685,73 +739,62 @@ fn skip_statement(word: &str, arguments: &str) -> Result<String, ProgramFault> {
     }
 }
 
-/// Words of controls that can move the tool, change what positions mean, or lead elsewhere, without a number: of Sinumerik, Heidenhain and
-/// macros.
+/// Words of which none stands in prose that is passed over: of Heidenhain with free words behind them, of Sinumerik, Okuma and macros.
 #[rustfmt::skip]
-const CONTROL_WORDS: [&str; 41] = [
+const CONTROL_WORDS: [&str; 51] = [
     "ATRANS", "TRANS", "AROT", "ROT", "AMIRROR", "MIRROR", "ASCALE", "SCALE", "SUPA", "POS", "POSA", "SPOS", "MCALL", "EXTCALL",
     "TRAORI", "TRAFOOF", "TRANSMIT", "TRACYL", "CALL", "CYCL", "PLANE", "LBL", "L", "LN", "LP", "CC", "CR", "IF", "WHILE", "GOTO",
     "REPEAT", "GOTOF", "GOTOB", "GOTOC", "GOTOS", "RND", "CHR", "CHF", "APPR", "DEP", "CASE",
+    "TCH", "FN", "FUNCTION", "DEF", "PGM", "SEL", "DECLARE", "SQL", "PRESET", "MODIN",
 ];
 
-/// Words of blocks beside letters with numbers, of which no block is by itself.
-const BLOCK_WORDS: [&str; 14] =
-    ["FMAX", "FAUTO", "FU", "FZ", "RL", "RR", "DR", "MAX", "AC", "IC", "DC", "ANG", "RP", "AP"];
+/// Returns whether a text for a control, in capitals, is known to move nothing: comments, and prose, which no control executes.
+fn moves_nothing(text: &str) -> bool {
+    text.split(';').all(|part| match without_comments(part) {
+        Some(plain) => plain.trim().is_empty() || is_plain_prose(&plain),
+        None => false,
+    })
+}
 
-/// Returns whether a text, in capitals, could be a block for a control: if it has a code, a word of a control, a variable or a call, or
-/// letters with numbers and no word that a block cannot have. A comment in parentheses and prose are none.
-fn could_move(text: &str) -> bool {
-    // A parenthesis after a name has a comment, or the arguments of a call.
+/// Returns a text without what stands in parentheses and brackets; `None` if one of them is not closed.
+fn without_comments(text: &str) -> Option<String> {
     let mut plain = String::new();
-    let mut depth = 0;
+    let mut depth = 0_usize;
     for character in text.chars() {
         match character {
-            '(' => depth += 1,
-            ')' if depth > 0 => depth -= 1,
-            '"' | '\'' => plain.push(' '),
+            '(' | '[' => depth += 1,
+            ')' | ']' => depth = depth.checked_sub(1)?,
             _ if depth == 0 => plain.push(character),
             _ => {}
         }
     }
-    let mut blocks = plain.split([';', '$']).chain([text]);
-    blocks.any(|block| is_block(block.trim()))
+    (depth == 0).then_some(plain)
 }
 
-/// Returns whether a text could be a block.
-fn is_block(text: &str) -> bool {
-    if text.starts_with('(') && text.find(')') == Some(text.len() - 1) {
-        return false;
-    }
-    let has_code = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '.').any(|word| {
+/// Returns whether a text is prose: without signs of assignments and variables, codes and words of [`CONTROL_WORDS`], and with two words in
+/// a row that no control has, for which any of them refuses the text as a block.
+fn is_plain_prose(text: &str) -> bool {
+    let is_sign =
+        |c: char| !(c.is_alphanumeric() || c.is_whitespace() || ".,:!?'\"&+-*/°".contains(c));
+    let is_code = |word: &str| {
         let number = word.strip_prefix("CYCLE");
         let number = number.or_else(|| word.strip_prefix(['G', 'M', 'O', 'T', 'N', 'L', 'P']));
         CONTROL_WORDS.contains(&word)
             || number.is_some_and(|number| number.starts_with(|c: char| c.is_ascii_digit()))
-    });
-    // `X=5` and `R1=5` of Sinumerik.
-    let assigns = text.split_whitespace().any(|word| {
-        word.split_once('=').is_some_and(|(name, _)| {
-            let mut name = name.chars();
-            name.next().is_some_and(|c| c.is_ascii_alphabetic()) && name.all(|c| c.is_ascii_digit())
-        })
-    });
-    // The name of a subprogram calls it, alone or with arguments.
-    let is_name = |text: &str| {
-        text.starts_with(|c: char| c.is_ascii_alphabetic())
-            && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
     };
-    let is_call = is_name(text.split_once('(').map_or(text, |(name, _)| name.trim_end()));
-    has_code || assigns || is_call || text.contains(['#', '%']) || has_words_of_blocks(text)
-}
-
-/// Returns whether a text has a letter with a number, and no word that a block cannot have: a control refuses it whole.
-fn has_words_of_blocks(text: &str) -> bool {
-    let mut letters = text.split(|c: char| !c.is_ascii_alphabetic()).filter(|run| !run.is_empty());
-    let is_of_block =
-        |run: &str| run.len() == 1 || BLOCK_WORDS.contains(&run) || CONTROL_WORDS.contains(&run);
-    letters.clone().any(|run| run.len() == 1)
-        && text.contains(|c: char| c.is_ascii_digit())
-        && letters.all(is_of_block)
+    let mut words = text.split(|c: char| !c.is_alphanumeric() && c != '.');
+    if text.contains(is_sign) || words.any(is_code) {
+        return false;
+    }
+    let is_plain = |word: &&str| {
+        // A colon ends a label of Sinumerik, behind which a name is a call.
+        let word = word.trim_matches(|c: char| !c.is_alphanumeric() && c != ':');
+        word.chars().count() > 1
+            && word.chars().all(char::is_alphabetic)
+            && !is_word_of_sinumerik(word)
+    };
+    let words: Vec<&str> = text.split_whitespace().collect();
+    words.windows(2).any(|pair| pair.iter().all(is_plain))
 }
 
 /// Returns whether a word is a letter with a number.

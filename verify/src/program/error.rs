@@ -102,6 +102,20 @@ faults! {
             /// The solid's name.
             solid: String,
         },
+        /// A file without a unit has an arc, and the part is not in millimetres.
+        #[code = P0607]
+        #[error(
+            "{file}:{line}: an arc in a file without UNITS is divided into chords as in mm, but the part is in {part}: \
+             state UNITS/MM or UNITS/INCHES before the first position, or post the arcs as GOTO points"
+        )]
+        UnscaledArc {
+            /// The file.
+            file: String,
+            /// The line of the first arc, 1-based.
+            line: usize,
+            /// The part's unit.
+            part: Unit,
+        },
     }
 }
 

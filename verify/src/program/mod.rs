@@ -18,6 +18,8 @@ mod error;
 mod write;
 
 pub use cutter::Cutter;
+use cutter::StatedCutter;
+pub(crate) use cutter::cutting_radii;
 pub use error::{ProgramError, ProgramFault};
 pub use write::{AptHeader, Decimals, WriteError, apt_unit};
 
@@ -43,8 +45,10 @@ pub struct ClData {
     file: String,
     /// Line of `UNITS` in a program that was read.
     unit_line: Option<usize>,
-    /// Cutters that APT states, as arguments of `CUTTER` in the program's unit, each with its line.
-    cutters: Vec<(usize, Vec<f64>)>,
+    /// Line of the first arc whose chords were computed as in mm, in a file without `UNITS`.
+    unscaled_arc: Option<usize>,
+    /// Cutters that APT states, in the program's unit.
+    cutters: Vec<StatedCutter>,
 }
 
 /// A program of either kind, as a file holds it.
@@ -135,6 +139,7 @@ impl ClData {
             tool: None,
             file,
             unit_line: None,
+            unscaled_arc: None,
             cutters: Vec::new(),
         })
     }
@@ -193,6 +198,7 @@ impl ClData {
         let programs = tapes.into_iter().map(|tape| ClData {
             unit: tape.unit.map(|(unit, _)| unit),
             unit_line: tape.unit.map(|(_, line)| line),
+            unscaled_arc: tape.unscaled_arc,
             locations: tape.locations,
             ignored: tape.ignored,
             tool: tape.tool,
@@ -208,18 +214,19 @@ impl ClData {
     }
 
     /// Checks that a unit that the file states is the part's. A file that states none is taken to be in the
-    /// part's unit.
+    /// part's unit. Arcs of such a file are divided into chords as in millimetres.
     ///
     /// # Errors
-    /// If the units differ.
+    /// If the units differ, or if a file without a unit has an arc and the part is not in millimetres.
     pub fn check_unit(&self, part: Unit) -> Result<(), ProgramError> {
-        match self.unit {
-            Some(stated) if stated != part => Err(ProgramError::Unit {
-                file: self.file.clone(),
-                line: self.unit_line,
-                stated,
-                part,
-            }),
+        let file = || self.file.clone();
+        match (self.unit, self.unscaled_arc) {
+            (Some(stated), _) if stated != part => {
+                Err(ProgramError::Unit { file: file(), line: self.unit_line, stated, part })
+            }
+            (None, Some(line)) if part != Unit::Millimetre => {
+                Err(ProgramError::UnscaledArc { file: file(), line, part })
+            }
             _ => Ok(()),
         }
     }
@@ -276,7 +283,8 @@ struct Tape {
     unit: Option<(Unit, usize)>,
     ignored: Vec<(usize, String)>,
     tool: Option<u32>,
-    cutters: Vec<(usize, Vec<f64>)>,
+    unscaled_arc: Option<usize>,
+    cutters: Vec<StatedCutter>,
 }
 
 /// Returns whether a text is a program of blocks for a control.
@@ -311,7 +319,8 @@ fn begins_call(line: &str) -> bool {
     let rest = line.trim_start_matches(name);
     let word = &line[..line.len() - rest.len()];
     let is_declared = ["DEF", "PROC"].iter().any(|known| word.eq_ignore_ascii_case(known));
-    !word.is_empty() && rest.trim_start().starts_with('(') || is_declared
+    let is_called = !word.is_empty() && rest.trim_start().starts_with('(');
+    is_called && !apt::is_prose(line) || is_declared
 }
 
 /// Decodes bytes as text, and reads its positions.

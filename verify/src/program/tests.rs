@@ -14,7 +14,8 @@ pub(super) fn line_of(error: &ProgramError) -> usize {
         ProgramError::OnePosition { line, .. }
         | ProgramError::Cutter { line, .. }
         | ProgramError::Line { line, .. }
-        | ProgramError::NoSpin { line, .. } => *line,
+        | ProgramError::NoSpin { line, .. }
+        | ProgramError::UnscaledArc { line, .. } => *line,
         ProgramError::Unit { line, .. } => line.unwrap_or(0),
         ProgramError::Read { .. } | ProgramError::NoPosition { .. } => 0,
     }
@@ -115,9 +116,16 @@ fn the_first_line_tells_g_code() {
         let read = ProgramFile::parse(format!("; A\n\n{first}\n"), "a.mpf");
         assert!(matches!(read, Ok(ProgramFile::Gcode(_))), "{first}: {read:?}");
     }
-    for first in
-        ["PARTNO/A", "GOTO/1,2,3,0,0,1", "UNITS/MM", "1,2,3,0,0,1", "x,y,z,i,j,k", "PARTNO A (B)"]
-    {
+    for first in [
+        "PARTNO/A",
+        "GOTO/1,2,3,0,0,1",
+        "UNITS/MM",
+        "1,2,3,0,0,1",
+        "x,y,z,i,j,k",
+        "PARTNO A (B)",
+        "PARTNO (OP10)",
+        "PPRINT (A)",
+    ] {
         let read = ProgramFile::parse(format!("{first}\n"), "a.cl");
         assert!(!matches!(read, Ok(ProgramFile::Gcode(_))), "{first}: {read:?}");
     }

@@ -30,6 +30,7 @@ use std::collections::HashMap;
 use std::mem;
 use std::sync::Arc;
 pub(super) use table::has_effect;
+pub(crate) use table::is_word;
 use text::{Cursor, Start, start};
 pub(crate) use variables::variable_name;
 use variables::{Reference, Variables};

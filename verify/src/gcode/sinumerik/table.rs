@@ -273,10 +273,14 @@ const STATEMENTS: &[&str] = &[
     "PROC", "RET", "REPEATB", "ORIWKS", "ORIMKS", "ORIAXES", "ORIVECT", "ORIPLANE",
 ];
 
+/// Returns whether a word, in either case, is one of Sinumerik.
+pub(crate) fn is_word(word: &str) -> bool {
+    STATEMENTS.iter().any(|known| word.eq_ignore_ascii_case(known)) || use_of(word).is_some()
+}
+
 /// Returns whether a word is one of Sinumerik alone. Short words are words elsewhere, too, and count at the begin of a line.
 pub(super) fn is_marker(word: &str, is_first: bool) -> bool {
-    let is_statement = STATEMENTS.iter().any(|known| word.eq_ignore_ascii_case(known));
-    (word.len() > 3 || is_first && word.len() == 3) && (is_statement || use_of(word).is_some())
+    (word.len() > 3 || is_first && word.len() == 3) && is_word(word)
 }
 
 #[cfg(test)]

@@ -12,6 +12,7 @@
 
 use super::super::{ProgramFault, number};
 use nalgebra::{Point3, Vector3};
+use std::collections::HashSet;
 use std::f64::consts::{PI, TAU};
 use touchoff::{Pose, Unit};
 
@@ -26,6 +27,9 @@ const RADII: f64 = 1e-3;
 
 /// Least step of coordinates, in mm. An arc between two positions that are nearer can be a whole turn.
 const LEAST_STEP: f64 = 5e-4;
+
+/// Largest distance of two positions that are the same up to rounding, in the unit of the program.
+const SAME: f64 = 1e-6;
 
 /// A drilling cycle. Lengths are along the tool axis from the point of a hole.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -128,7 +132,7 @@ impl Cycle {
         if let Some(before) = before.filter(|_| level < self.rapid_to) {
             // Some controls move over the hole first, and some rise first.
             let aside = before.tip() - point.tip() - level * axis;
-            if aside.norm() > LEAST_STEP {
+            if aside.norm() > SAME {
                 let word = "a hole above the level before it, to which controls go in two ways,"
                     .to_owned();
                 return Err(ProgramFault::Cycle { word });
@@ -162,11 +166,64 @@ impl Cycle {
 pub(super) struct Arc {
     centre: Point3<f64>,
     normal: Vector3<f64>,
-    /// The angle of the turn in radians, where it is stated.
-    angle: Option<f64>,
+    direction: Direction,
     /// The angles up to the last position on the arc, and between two of them, where several are on it.
     turned: f64,
     step: f64,
+}
+
+/// The statement from which the direction of an arc follows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Direction {
+    /// The normal: the arc turns counter-clockwise about it.
+    Normal,
+    /// The angle of the turn, in radians, where it fits one direction only.
+    Angle(f64),
+    /// The normal, if other arcs prove that those of the file state directions.
+    Unproved,
+}
+
+/// Evidence about the normals of `MOVARC`: newer post processors turn the normal of a clockwise arc, older ones state one normal for both
+/// directions.
+#[derive(Default)]
+pub(super) struct Normals {
+    /// The normals with the tool axes, in steps of [`Normals::STEP`].
+    known: HashSet<[Vector3<i32>; 2]>,
+    is_proved: bool,
+    /// Set if an arc turns clockwise about its normal.
+    is_refuted: bool,
+    /// The line of the first arc that fits both directions.
+    open: Option<usize>,
+}
+
+impl Normals {
+    const STEP: f64 = 1e-4;
+
+    /// Adds an arc as the file states it, and as its angle turns it.
+    pub(super) fn add(&mut self, line: usize, stated: &Arc, turned: &Arc, ends: [&Pose; 2]) {
+        if stated.direction == Direction::Normal {
+            return;
+        }
+        let [before, end] = ends;
+        let is_open = stated.fits_both_ways(before, end);
+        if is_open {
+            self.open.get_or_insert(line);
+        }
+        let is_turned = !is_open && stated.normal != turned.normal;
+        self.is_refuted |= is_turned;
+        let axis = end.axis();
+        let rounded = |vector: Vector3<f64>| vector.map(|part| (part / Self::STEP).round() as i32);
+        // A counter-clockwise arc has the same normal in files of both kinds.
+        let is_clockwise = stated.normal.dot(&axis) < Self::STEP - 1.0;
+        let is_opposite = self.known.contains(&[-stated.normal, axis].map(rounded));
+        self.is_proved |= !is_turned && (is_clockwise || is_opposite);
+        self.known.insert([stated.normal, axis].map(rounded));
+    }
+
+    /// Returns the line of the first arc whose direction the file does not tell.
+    pub(super) fn ambiguous(&self) -> Option<usize> {
+        self.open.filter(|_| self.is_refuted || !self.is_proved)
+    }
 }
 
 /// Largest difference between a stated angle and that of an arc's ends, in radians.
@@ -179,7 +236,7 @@ impl Arc {
             true => {
                 let centre = Point3::new(x, y, z);
                 let normal = normal.normalize();
-                Ok(Arc { centre, normal, angle: None, turned: 0.0, step: 0.0 })
+                Ok(Arc { centre, normal, direction: Direction::Normal, turned: 0.0, step: 0.0 })
             }
             false => Err(arc("has a normal that is no unit vector")),
         }
@@ -209,8 +266,9 @@ impl Arc {
             *value = number(word)?;
         }
         let [x, y, z, i, j, k] = values;
-        let angle = angle.map(|angle| angle.abs().to_radians());
-        Ok(Arc { angle, ..Arc::new([x, y, z], [i, j, k])? })
+        let angle = angle.map(|angle| Direction::Angle(angle.abs().to_radians()));
+        let direction = angle.unwrap_or(Direction::Unproved);
+        Ok(Arc { direction, ..Arc::new([x, y, z], [i, j, k])? })
     }
 
     /// Reads the arguments of CATIA's `TLON,GOFWD`, the arc from a position in a direction, and returns it with its end.
@@ -234,7 +292,8 @@ impl Arc {
             return Err(arc("begins in no direction"));
         };
         let end = Pose::from_axis(Point3::new(x, y, z), from.axis())?;
-        let found = Arc { centre, normal, angle: None, turned: 0.0, step: 0.0 };
+        let direction = Direction::Normal;
+        let found = Arc { centre, normal, direction, turned: 0.0, step: 0.0 };
         // The line through centre and end meets the circle twice.
         let is_long = found.turn(from, &end) > PI - ANGLE_TOLERANCE;
         let is_short = found.turn(from, &end) < PI + ANGLE_TOLERANCE;
@@ -244,30 +303,43 @@ impl Arc {
         }
     }
 
-    /// Returns the angle from a position to another about the normal, above 0 and at most a whole turn.
+    /// Returns the angle from a position to another about the normal: above 0, and a whole turn between positions of one point of the
+    /// circle.
     fn turn(&self, from: &Pose, to: &Pose) -> f64 {
         let [from, to] = [from, to].map(|pose| self.arm(pose).0);
-        let turn = from.cross(&to).dot(&self.normal).atan2(from.dot(&to));
-        if from == to { TAU } else { turn.rem_euclid(TAU) }
+        if (to - from).norm() <= SAME {
+            return TAU;
+        }
+        from.cross(&to).dot(&self.normal).atan2(from.dot(&to)).rem_euclid(TAU)
     }
 
-    /// Returns whether the angle of the turn is stated.
-    pub(super) fn states_angle(&self) -> bool {
-        self.angle.is_some()
+    /// Returns the angle of the turn about the normal; `None` if the arc states another one.
+    fn sweep(&self, before: &Pose, end: &Pose) -> Option<f64> {
+        let turn = self.turn(before, end);
+        let Direction::Angle(angle) = self.direction else { return Some(turn) };
+        // Rounding may put the end of a whole turn behind its start.
+        let beyond = Some(turn + TAU).filter(|_| turn <= ANGLE_TOLERANCE);
+        let mut sweeps = [Some(turn), beyond].into_iter().flatten();
+        sweeps.find(|sweep| (sweep - angle).abs() <= ANGLE_TOLERANCE)
     }
 
-    /// Returns whether the arc was turned about the other normal than `stated` has, which states the angle.
-    pub(super) fn is_reversed(&self, stated: &Arc) -> bool {
-        self.normal != stated.normal
+    /// Returns the distance of two positions in the plane of the arc.
+    fn gap(&self, before: &Pose, end: &Pose) -> f64 {
+        (self.arm(before).0 - self.arm(end).0).norm()
     }
 
-    /// Returns whether its angle is that of both directions: half a turn, or a whole one on a helix.
-    pub(super) fn fits_both_ways(&self, before: &Pose, end: &Pose) -> bool {
-        let rises = self.arm(before).1 != self.arm(end).1;
-        self.angle.is_some_and(|angle| {
-            (angle - PI).abs() <= 2.0 * ANGLE_TOLERANCE
-                || rises && angle > TAU - 2.0 * ANGLE_TOLERANCE
-        })
+    /// Returns whether the arc can turn in both directions: without an angle, or with that of half a turn or of a whole one of a helix.
+    fn fits_both_ways(&self, before: &Pose, end: &Pose) -> bool {
+        let rises = (self.arm(before).1 - self.arm(end).1).abs() > SAME;
+        match self.direction {
+            Direction::Normal => false,
+            // Both ways around a whole circle are one.
+            Direction::Unproved => rises || self.gap(before, end) > SAME,
+            Direction::Angle(angle) => {
+                (angle - PI).abs() <= 2.0 * ANGLE_TOLERANCE
+                    || rises && angle > TAU - 2.0 * ANGLE_TOLERANCE
+            }
+        }
     }
 
     /// Returns the way from the axis of the arc to a position, and its height along the axis.
@@ -279,12 +351,30 @@ impl Arc {
 
     /// Returns the arc from a position on to another, if both are on it: Creo states several, three or more of a whole circle, equally far
     /// from each other. A longer way is a chord of a straight motion.
-    pub(super) fn continued(&self, before: &Pose, end: &Pose, unit: Option<Unit>) -> Option<Arc> {
-        let is_straight = (before.axis() - end.axis()).norm() <= 1e-9;
+    ///
+    /// # Errors
+    /// If the way is shorter: it may be the rest of the arc, or a chord.
+    pub(super) fn continued(
+        &self,
+        before: &Pose,
+        end: &Pose,
+        unit: Option<Unit>,
+    ) -> Result<Option<Arc>, ProgramFault> {
         let turn = self.turn(before, end);
-        let is_step = turn < self.step.min(TAU / 3.0) + ANGLE_TOLERANCE;
-        let is_on = is_step && self.turned + turn < TAU + ANGLE_TOLERANCE;
-        (is_straight && is_on && self.radii(before, end, unit).is_some()).then_some(*self)
+        let is_left =
+            turn < self.step + ANGLE_TOLERANCE && self.turned + turn < TAU + ANGLE_TOLERANCE;
+        let moves = self.gap(before, end) >= LEAST_STEP / scale(unit);
+        let is_straight = (before.axis() - end.axis()).norm() <= 1e-9;
+        let is_on = is_straight && self.radii(before, end, unit).is_some();
+        if !(is_left && moves && is_on) {
+            return Ok(None);
+        }
+        match turn > self.step - ANGLE_TOLERANCE {
+            true => Ok(Some(*self).filter(|_| turn < TAU / 3.0 + ANGLE_TOLERANCE)),
+            false => Err(arc(
+                "has a nearer position behind others at equal distances, to which it or a straight line may lead",
+            )),
+        }
     }
 
     /// Returns the radii at two positions, if they are one up to rounding.
@@ -323,21 +413,18 @@ impl Arc {
         let Some([start_radius, end_radius]) = self.radii(before, end, unit) else {
             return Err(arc("has another radius at its start than at its end"));
         };
-        let gap = (before.tip() - end.tip()).norm();
-        if gap > 0.0 && gap < LEAST_STEP / scale(unit) && self.angle.is_none() {
+        let gap = self.gap(before, end);
+        let states_angle = matches!(self.direction, Direction::Angle(_));
+        if gap > SAME && gap < LEAST_STEP / scale(unit) && !states_angle {
             return Err(arc("ends so near its start that it could be a whole turn"));
         }
-        let mut sweep = self.turn(before, end);
-        if let Some(angle) = self.angle
-            && (sweep - angle).abs() > ANGLE_TOLERANCE
-        {
+        let mut found = self.sweep(before, end);
+        if found.is_none() {
             // Older post processors state one normal for both directions.
             self.normal = -self.normal;
-            sweep = self.turn(before, end);
-            if (sweep - angle).abs() > ANGLE_TOLERANCE {
-                return Err(arc("has another angle than its ends"));
-            }
+            found = self.sweep(before, end);
         }
+        let sweep = found.ok_or(arc("has another angle than its ends"))?;
         let [(from, low), (_, high)] = [before, end].map(|pose| self.arm(pose));
         let angle =
             (8.0 * CHORD_TOLERANCE / scale(unit) / start_radius.max(end_radius)).sqrt().min(0.1);
@@ -365,7 +452,8 @@ impl Arc {
     }
 }
 
-/// Returns the millimetres of a unit; a program without one is in millimetres.
+/// Returns the millimetres of a unit. A program without one is read as in millimetres, and arcs in it fit no part in another unit
+/// (`ClData::check_unit`).
 fn scale(unit: Option<Unit>) -> f64 {
     unit.unwrap_or(Unit::Millimetre).millimetres()
 }

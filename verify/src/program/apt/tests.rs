@@ -151,7 +151,10 @@ fn what_could_be_a_motion_is_refused() {
                  ARC/1,2,3|CIRC/1,2,3|ARCDAT/1,2,3|DRILL/1,2,3|GODLT/1,2,3|ORIGIN/0,0,35|CUTCOM/3DCOMP|\
                  MODE/INCR|THICK/-5|HEAD/2|LOADTL/2|CUTTER/50|INSERT G0 Z-5|LETTER/G1 Z-5|INSERT/X5 Y-2.|INSERT/TRANS X10|INSERT/R1=5|INSERT/L X+5|\
                  INSERT/CYCLE800(1)|INSERT/X0Y0Z-5.|INSERT/Z-5(PARK)|INSERT/Z[-5.]|INSERT/Z-5. FMAX|INSERT/X+0 Z-5. R0 FMAX|INSERT/Z-5.,F100|INSERT/'Z-5.'|INSERT/Z-5. (DOWN)|INSERT/G 0 Z -5.|INSERT/Z-5.F100.|INSERT/Z-5.*|INSERT/(A) ; Z-5.|INSERT/GOTOF ENDE|\
-                 INSERT/MYSUB(1,2)|INSERT/MYSUB|INSERT/RND R5|INSERT/#1=2|INSERT/CALL LBL 5|RAPID/ON|OPSKIP/ON|\
+                 INSERT/MYSUB(1,2)|INSERT/MYSUB|INSERT/RND R5|INSERT/#1=2|INSERT/CALL LBL 5|INSERT $P_PFRAME=CTRANS(Z,-10)|INSERT $P_UIFR[1,Z,TR]=-10|\
+                 INSERT $TC_DP3[1,1]=90|INSERT TCARR=1|INSERT TCH PROBE 400 BASIC ROTATION|INSERT FUNCTION RESET TCPM|\
+                 INSERT FN 17: SYSWRITE ID 220 NR4 IDX3 = -10|INSERT TOROT PAROT|INSERT (A|INSERT FOO BAR=5|INSERT FOO: BAR|\
+                 CSI_ROTATE_TABLE 90|CSI_WORK_OFFSET/2|RAPID/ON|OPSKIP/ON|\
                  TRACUT/M1|C1 = CIRCLE/0,0,1|M1 = MACRO/|AUXFUN/98|PREFUN/91|X|GOTO|TLDATA/MILL,50.,0.";
     for word in words.split('|') {
         let text =
@@ -278,8 +281,9 @@ fn the_cutter_is_compared_with_the_tool() {
     };
     let mm = Unit::Millimetre;
     for same in [
-        "CUTTER/6",
         "CUTTER/6.0,3.0",
+        "$$-> CUTTER / 6.000000",
+        "TLDATA/DRILL,MILL,6.0000,0.0000,80.0000,118.0000,35.0000",
         "CUTTER/6.,3.,0.,3.,0.,0.,30.",
         "CUTTER/6.,3.,0.,0.,0.,0.,30.",
         "CUTTER/6.001,3",
@@ -290,12 +294,46 @@ fn the_cutter_is_compared_with_the_tool() {
         assert_eq!(check(same, mm).expect(same), None);
     }
     assert_eq!(check("CUTTER/.23622,.11811", Unit::Inch).expect("the same"), None);
-    for other in ["CUTTER/50", "CUTTER/6,0", "CUTTER/6,3,0,3,0,5", "UNITS/INCHES\nCUTTER/6,3"] {
+    for other in [
+        "CUTTER/50",
+        // A corner that is left out is 0.
+        "CUTTER/6",
+        "$$-> CUTTER / 8.000000",
+        "$$->CUTTER/6,0",
+        "TLDATA/DRILL,MILL,8.0000,0.0000,80.0000,118.0000,35.0000",
+        "TLDATA/TCUTTER,20.0000,0.0000,75.0000,5.0000,0.0000,0,0,0",
+        "CUTTER/6,0",
+        "CUTTER/6,3,0,3,0,5",
+        "UNITS/INCHES\nCUTTER/6,3",
+    ] {
         assert!(check(other, mm).is_err(), "{other}");
     }
     let error = check("CUTTER/50,1", mm).expect_err("another one");
     let is_found = matches!(&error, ProgramError::Cutter { line: 1, stated, expected, .. } if (&**stated, &**expected) == ("50,1", "6,3"));
     assert!(is_found, "{error}");
+    assert_eq!(check("TLDATA/BARREL,6,5,75,5", mm).expect("another kind"), Some(1));
+}
+
+/// Two numbers do not describe a drill, but its diameter is compared.
+#[test]
+fn the_diameter_of_other_tools_is_compared() {
+    let text = "tool Drill { units mm; profile { start (0, 0); line to (2.5, 1.5) as point cutting; \
+                line to (2.5, 40) as flute cutting; line to (2.5, 60), (0, 60) as shank; } niceness cutting: 1; }";
+    let drill = Interpreted::from_text("drill.tool", text).expect("a tool");
+    let check = |cutter: &str| {
+        let text = format!("{cutter}\nGOTO/1,2,3\nGOTO/4,5,6\nFINI");
+        program(&text).check_cutter(drill.info(), Unit::Millimetre)
+    };
+    assert_eq!(check("TLDATA/DRILL,MILL,5,0,50,118,35").expect("the same"), None);
+    // The angle of a side says where the diameter is.
+    for same in ["CUTTER/5,0", "TLDATA/MILL,5,0,75,0,0", "CUTTER/1,0,0,0,0,30,50"] {
+        assert_eq!(check(same).expect(same), Some(1));
+    }
+    for other in ["CUTTER/10,0", "CUTTER/10", "TLDATA/DRILL,MILL,10,0,50,118,35"] {
+        let error = check(other).expect_err(other).to_string();
+        assert!(error.contains("CUTTER/10") && error.ends_with("to try another"), "{error}");
+        assert!(error.contains("which is CUTTER/5 in mm"), "{error}");
+    }
 }
 
 #[test]
@@ -303,6 +341,21 @@ fn holds_the_program_to_the_part() {
     let program = program("\nUNITS/MMS\nGOTO/1,2,3\nFINI\n");
     let error = program.check_unit(Unit::Inch).expect_err("they differ");
     assert_eq!((line_of(&error), error.code()), (2, "P0605"), "{error}");
+}
+
+/// Without a unit, arcs are divided into chords as in millimetres.
+#[test]
+fn arcs_need_the_unit_of_the_part() {
+    let text = "GOTO/1,0,0\nCIRCLE/0,0,0,0,0,1,1\nGOTO/-1,0,0\nFINI\n";
+    let unstated = program(text);
+    assert!(unstated.check_unit(Unit::Millimetre).is_ok());
+    for part in [Unit::Inch, Unit::Metre] {
+        let error = unstated.check_unit(part).expect_err("an arc");
+        assert_eq!((line_of(&error), error.code()), (3, "P0607"), "{error}");
+    }
+    let straight = text.replace("CIRCLE/0,0,0,0,0,1,1\n", "");
+    assert!(program(&straight).check_unit(Unit::Inch).is_ok());
+    assert!(program(&format!("UNITS/INCHES\n{text}")).check_unit(Unit::Inch).is_ok());
 }
 
 /// The words are those of the bodies that the sentences show.
@@ -373,6 +426,11 @@ fn programs_of_solidworks_are_read() {
     }
     let rapids = read.locations.iter().filter(|stop| stop.rapid).map(|stop| stop.line);
     assert_eq!(rapids.collect::<Vec<_>>(), [10, 18]);
+    for text in
+        ["INSERT/(G0 Z-5)", "INSERT TOOL 3: 10MM END MILL (LONG)", "LETTER/FACE THE TOP, 2 PASSES"]
+    {
+        assert_eq!(program(&format!("{text}\nGOTO/1,2,3\nFINI\n")).ignored.len(), 1);
+    }
     // The other way round is three quarters of the circle.
     let other = program(&text.replace("0,0,1,20", "0,0,-1,20"));
     let lowest = other.locations.iter().map(|stop| stop.pose.tip().y).fold(0.0, f64::min);
@@ -415,7 +473,19 @@ fn arcs_of_several_systems_are_read() {
         (movarc("0, 0, 0, 0, 0, 1., 10., ANGLE, 270."), 0.75 * turn, [-10.0, 10.0]),
         // A stub of a turn is none.
         ("GOTO/40,0,0\nCIRCLE/-1000,0,0,0,0,1,1040\nGOTO/40,0.001,0\nFINI".to_owned(), 0.001, [0.0, 0.001]),
-        (movarc(" CENTER, 0, 0, 0, AXIS, 0, 0, 1, RADIUS, 10"), 0.75 * turn, [-10.0, 10.0]),
+        // Without an angle, a clockwise arc has to tell that normals state directions.
+        (movarc(" CENTER, 0, 0, 0, AXIS, 0, 0, -1, RADIUS, 10"), turn / 4.0, [-10.0, 0.0]),
+        (
+            movarc("CENTER, 0, 0, 0, AXIS, 0, 0, 1, RADIUS, 10\nGOTO/0,-10,0\nMOVARC/CENTER, 0, 0, 0, AXIS, 0, 0, -1, RADIUS, 10\nGOTO/-10,0,0"),
+            turn + 200f64.sqrt(),
+            [-10.0, 10.0],
+        ),
+        // A statement between them ends Creo's arc.
+        (
+            format!("{creo}GOTO/10,0,0\nCIRCLE/0,0,0,0,0,1,10\nGOTO/0,10,0\nFEDRAT/400\nGOTO/7.0710678,7.0710678,0\nFINI"),
+            turn / 4.0 + 20.0 * (TAU / 16.0).sin(),
+            [0.0, 10.0],
+        ),
     ] {
         let stops = program(&text).locations;
         let tips: Vec<_> = stops.iter().map(|stop| stop.pose.tip()).collect();
@@ -424,9 +494,23 @@ fn arcs_of_several_systems_are_read() {
         let ends = tips.iter().fold([f64::MAX, f64::MIN], |[a, b], tip| [a.min(tip.y), b.max(tip.y)]);
         assert!((ends[0] - lowest).abs() < 1e-3 && (ends[1] - highest).abs() < 1e-3, "{ends:?}: {text}");
     }
+    let helix =
+        |end: &str| format!("UNITS/MM\nGOTO/10,0,0\nCIRCLE/0,0,0,0,0,1,10\nGOTO/{end}\nFINI");
+    let half = "MOVARC/0, 20, 0, 0, 0, 1., 15., ANGLE, 180.\nGOTO/0,5,0\n";
     for text in [
+        // A helix that ends near its start could be a whole turn.
+        helix("9.9999999,-0.0001,-1"),
+        // A shorter way behind equal ones may be the rest of the circle or a chord.
+        format!(
+            "{creo}GOTO/10,0,0\nCIRCLE/0,0,0,0,0,1,10\nGOTO/0,10,0\nGOTO/-10,0,0\nGOTO/0,-10,0\nGOTO/9.659258,-2.588190,0\nFINI"
+        ),
+        // A counter-clockwise arc has the same normal in files of both kinds.
+        format!(
+            "GOTO/10,0,0\nMOVARC/0,0,0,0,0,1,10,ANGLE,90\nGOTO/0,10,0\nGOTO/0,35,0\n{half}FINI"
+        ),
         movarc("0, 0, 0, 0, 0, 1., 10., ANGLE, 45."),
         movarc("0, 0, 0, 0, 0, 1., 10."),
+        movarc("CENTER, 0, 0, 0, AXIS, 0, 0, 1, RADIUS, 10"),
         // Radii that differ, of which each control makes another way, a way that could be a whole turn, and half a turn in a file that
         // states one normal for both directions.
         "UNITS/MM\nGOTO/200,0,0\nCIRCLE/0,0,0,0,0,1,200\nGOTO/-200.002,0,0\nFINI".to_owned(),
@@ -445,6 +529,28 @@ fn arcs_of_several_systems_are_read() {
         "GOTO/10,0,0\nCIRCLE/0,0,0,0,0,1,10,1\nGOTO/0,10,0\nFINI".to_owned(),
     ] {
         assert_eq!(refusal(&text).1, "P0532", "{text}");
+    }
+}
+
+/// A helix of a whole turn is one in every plane, although its ends are rounded, and also with a stated angle.
+#[test]
+fn a_helix_of_a_whole_turn_is_read_in_every_plane() {
+    for degrees in [0.0_f64, 10.0, 20.0, 30.0, 35.0, 40.0, 50.0, 60.0] {
+        let (y, z) = degrees.to_radians().sin_cos();
+        let start = format!("UNITS/MM\nGOTO/-6,20,-5,0,{y:.7},{z:.7}\n");
+        let centre = format!("4,20,-5,0,{y:.7},{z:.7},10");
+        let end = format!("GOTO/-6,{:.6},{:.6},0,{y:.7},{z:.7}\n", 20.0 - y, -5.0 - z);
+        // A clockwise circle on the other side proves that normals state directions.
+        let proof = format!(
+            "MOVARC/-16,20,-5,0,{:.7},{:.7},10,ANGLE,360\nGOTO/-6,20,-5,0,{y:.7},{z:.7}\n",
+            -y, -z
+        );
+        for arc in [format!("CIRCLE/{centre}\n"), format!("{proof}MOVARC/{centre},ANGLE,360\n")] {
+            let text = format!("{start}{arc}{end}FINI");
+            let stops = program(&text).locations;
+            let farthest = stops.iter().map(|stop| stop.pose.tip().x).fold(f64::MIN, f64::max);
+            assert!((farthest - 14.0).abs() < 1e-4, "{degrees}: {farthest}");
+        }
     }
 }
 
@@ -490,6 +596,9 @@ fn positions_of_the_contour_are_refused() {
         )
     };
     assert_eq!(refusal(text("OUTPUT_ON_PROFILE", "LEFT, 1")), (3, "P0511"));
+    assert_eq!(refusal(text("OUTPUT_ON_PROFILE $", "LEFT, 1")), (3, "P0511"));
+    let late = "CUTCOM/LEFT,1\n$$-> CUTCOM_GEOMETRY_TYPE / OUTPUT_ON_PROFILE\nGOTO/1,2,3\nGOTO/4,5,6\nFINI\n";
+    assert_eq!(refusal(late), (2, "P0511"));
     for (kind, side) in [("OUTPUT_ON_CENTER", "LEFT, 1"), ("OUTPUT_ON_PROFILE", "OFF")] {
         assert_eq!(program(&text(kind, side)).locations.len(), 2);
     }
