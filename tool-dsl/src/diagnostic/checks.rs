@@ -51,7 +51,7 @@ kinds! {
         message "no curve separates the nearest features near ({d:.4}, {z:.4})"
         help "move features apart that are closer than 10^-10 of the tool's size, or draw chords of a circle as an arc"
         explain "At points near a border between such features rounding decides, so the tests would find the wrong region."
-        without "it depends on rounding: some balls that are drawn as more than 100 chords with 3 decimals cause it";
+        without "it depends on rounding: some balls that are drawn as chords with 3 decimals cause it";
     error T0608 Overlap { first: String, second: String, location: String }
         "overlapping regions"
         message "regions {first} and {second} overlap, for instance at {location}"
