@@ -176,7 +176,7 @@ impl Job<'_> {
             false => Met::Still { ceiling: lowest - distance },
         };
         let moves_with_tool = |link: Link| machine.is_some_and(|machine| is_of_tool(machine, link));
-        let bodies = self.bodies.iter().enumerate().filter_map(|(index, body)| {
+        let bodies = self.bodies.iter().enumerate().map(|(index, body)| {
             let corners = corners(body.bvh.bounds());
             let moving = self.revolved.iter().filter(|moving| moves_with_tool(moving.link));
             let moving = moving.filter(|moving| moving.against.contains(&index));
@@ -187,7 +187,7 @@ impl Job<'_> {
                 met(moving.link, lowest, moving.margin.max(margin_of(body)))
             });
             let tool = body.meets_tools().then(|| Met::Carried { margin: margin_of(body) });
-            Some(Obstacle {
+            Obstacle {
                 name: &body.name,
                 link: machine.map(|machine| body.frame.link(machine)),
                 hull: match body.frame {
@@ -195,8 +195,8 @@ impl Job<'_> {
                     BodyFrame::Part | BodyFrame::Table(_) => Hull::Part(corners),
                 },
                 is_fixture: matches!(body.role, BodyRole::Fixture { .. }),
-                met: some(solids.chain(tool))?,
-            })
+                met: solids.chain(tool).collect(),
+            }
         });
         // No tool is checked against a solid of revolution: the meshes that move with the tool are.
         let revolved = self.revolved.iter().filter(|moving| !moves_with_tool(moving.link));
@@ -212,7 +212,7 @@ impl Job<'_> {
                 link: Some(moving.link),
                 hull: Hull::Machine(self.hull(moving)),
                 is_fixture: false,
-                met: some(meshes)?,
+                met: meshes.collect(),
             })
         });
         let stock = self.stock.as_ref().map(|stock| Obstacle {
@@ -222,7 +222,8 @@ impl Job<'_> {
             is_fixture: false,
             met: vec![Met::Carried { margin: 0.0 }],
         });
-        bodies.chain(revolved).chain(stock).collect()
+        let all = bodies.chain(revolved).chain(stock);
+        all.filter(|obstacle| !obstacle.met.is_empty()).collect()
     }
 
     /// Returns points around a solid of revolution, in machine coordinates while all axes are at 0, in the part's unit.
@@ -368,12 +369,6 @@ fn at_height(levels: &[Level], height: f64) -> Vec<Level> {
         Level { height: if rise.is_finite() { height + rise } else { f64::NEG_INFINITY }, ..*level }
     });
     std::iter::once(Level { height, ..*base }).chain(links).collect()
-}
-
-/// Returns the items if there are any.
-fn some<T>(items: impl Iterator<Item = T>) -> Option<Vec<T>> {
-    let items: Vec<T> = items.collect();
-    (!items.is_empty()).then_some(items)
 }
 
 /// Returns the corners of a box.
