@@ -29,9 +29,7 @@ const CHORD_ROUNDING: f64 = 1e-18;
 const MAX_SEGMENTS: usize = 256;
 /// The largest radius of an arc, in chords.
 const MAX_RADIUS_IN_CHORDS: f64 = 1e6;
-/// The distance of a centre from the axis, in radii, that is the rounding of 256 bits.
-const CENTRE_ROUNDING: f64 = 1e-60;
-/// The largest distance of an arc's ends from its circle, and of a centre from the axis that it is meant to be on, in radii.
+/// The largest distance of an arc's ends from its circle, in radii.
 const MAX_CIRCLE_DEVIATION_IN_RADII: f64 = 1e-9;
 
 /// The largest distance of a tool from its tip at which its proofs are tried, in sizes of the tool.
@@ -207,13 +205,7 @@ fn circle(
             if radius.to_f64() <= 0.0 {
                 return Err(Diagnostic::new(expr.span, ProfileKind::RadiusNotPositive));
             }
-            let centre = by_radius(ends, &radius, arc.concave.is_some(), span)?;
-            // A radius in decimals leaves the centre of a ball or a cup beside the axis.
-            let from_axis = centre[0].to_f64().abs() / radius.to_f64();
-            match from_axis > CENTRE_ROUNDING && from_axis <= MAX_CIRCLE_DEVIATION_IN_RADII {
-                true => midway(ends, &[Number::int(0), centre[1].clone()]),
-                false => (centre, radius),
-            }
+            (by_radius(ends, &radius, arc.concave.is_some(), span)?, radius)
         }
     };
     let (r, chord) = (radius.to_f64(), norm(minus(doubles(ends[1]), doubles(ends[0]))));
