@@ -360,7 +360,7 @@ fn add_contradiction(
     taken: &'static str,
 ) {
     if (first.value - value).abs() > 0.01 * value {
-        // Of heights, the lower one is drawn with less of the cutter.
+        // The lower of two heights is drawn with less of the cutter.
         let is_narrower = value < first.value;
         let second = Stated { what, value };
         notes.push(Note::Contradiction { first, second, taken, is_narrower });

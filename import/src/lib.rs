@@ -362,7 +362,7 @@ fn files_of_archive(content: &[u8]) -> Option<usize> {
 fn unzipped(content: &[u8]) -> Result<String, String> {
     let mut archive =
         zip::ZipArchive::new(std::io::Cursor::new(content)).map_err(|error| error.to_string())?;
-    // Of files with one name the reader keeps the last.
+    // The reader keeps the last of several files with one name.
     if files_of_archive(content).is_some_and(|count| count != archive.len()) {
         return Err("the archive has two files of one name".to_owned());
     }

@@ -251,7 +251,7 @@ fn doubts_and_hands_of_tools_are_told() {
     assert_eq!(hsm("", assembly).1.len(), 0);
     let short = hsm("<body assembly-gauge-length=\"60\"/>", assembly);
     assert_eq!(short.1.len(), 1, "{short:?}");
-    // Of two statements, the one that gives the narrower tool can be the wrong one.
+    // The statement that gives the narrower tool can be the wrong one of two.
     let ball = |radius: u32| {
         let text = format!(
             "{{\"data\": [{{\"type\": \"ball end mill\", \"unit\": \"millimeters\", \"geometry\": {{\"DC\": 6, \"RE\": {radius}, \

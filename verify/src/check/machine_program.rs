@@ -519,9 +519,12 @@ impl MachineProgram {
             if !(is_empty || is_change || is_followed && has_length)
                 && let Some(way) = execution.resolver.top_way(&step, has_length)
             {
-                let tool = number.or(self.unnamed_tool);
-                let length = tool.and_then(|tool| self.setup.lengths.get(&tool).copied());
-                summary.add_top_way(TopWay { block: step.block(), tool: number, length, way });
+                summary.add_top_way(TopWay {
+                    block: step.block(),
+                    tool: number,
+                    length: self.tool_length(number),
+                    way,
+                });
             }
             // The known part of a way and the other curves of an arc keep the limits, too.
             let further: Vec<&JointMotion> = match &resolved {

@@ -33,7 +33,7 @@ struct Obstacle<'a> {
     met: Vec<Met>,
 }
 
-/// What of the tool's side can meet an obstacle, in the part's unit.
+/// A thing on the tool's side that can meet an obstacle. Lengths are in the part's unit.
 enum Met {
     /// The tool, or a body that Z carries with it: by how much its level has to be higher, which is the distance to keep and that by which
     /// a body hangs lower than the tip.

@@ -8,7 +8,8 @@
 //! One of the last two, or CATIA's `END`, has to end the program, so that a truncated file is never taken for a whole one. `$$`
 //! opens a comment, a trailing `$` continues the statement, `;` separates two statements, and case does not
 //! matter. Two comments state the frame of the positions, which may be repeated and not changed: CATIA's machining axis and
-//! Creo's coordinate system. Creo states its cutter, and whether positions are those of the contour, in comments, too. Creo states several positions on an arc after one `CIRCLE`.
+//! Creo's coordinate system. Creo states its cutter, and whether positions are those of the contour, in comments, too, and several
+//! positions on an arc after one `CIRCLE`.
 //!
 //! Statements about the tool hold for the positions that follow them: `LOADTL` between two positions changes the tool,
 //! and the cutters stated before or after it, up to the next position, are those of the new one. In NX's files,

@@ -23,6 +23,16 @@ pub(super) enum Stated {
     Other,
 }
 
+impl Stated {
+    fn numbers(&self) -> &[f64] {
+        match self {
+            Stated::Form(form) => form,
+            Stated::Diameter(diameter) => std::slice::from_ref(diameter),
+            Stated::Other => &[],
+        }
+    }
+}
+
 /// A cutter as described by APT's `CUTTER/diameter,radius`, in the program's unit: a flat end with rounded
 /// corners below a cylinder. The corner radius is half the diameter for a ball, and 0 for an end mill.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -117,15 +127,10 @@ impl ClData {
                 }
             };
             if let Some(expected) = other {
-                let shown = match stated {
-                    Stated::Form(form) => &form[..],
-                    Stated::Diameter(diameter) => std::slice::from_ref(diameter),
-                    Stated::Other => &[],
-                };
                 return Err(ProgramError::Cutter {
                     file: self.file.clone(),
                     line: *line,
-                    stated: joined(shown),
+                    stated: joined(stated.numbers()),
                     tool: info.name.to_string(),
                     expected: joined(&expected),
                     unit,

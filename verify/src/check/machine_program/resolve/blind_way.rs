@@ -6,18 +6,21 @@ use crate::gcode::{Position, Step, Z_ALONE};
 use crate::machine::{Axis, Chain, JointMotion, Joints, Side};
 use nalgebra::Vector3;
 
+/// The joints other than Z.
+const BESIDE_Z: [usize; 5] = [0, 1, 3, 4, 5];
+
 impl Resolver<'_> {
     /// Returns a step with joints at its ends on which Z is known, and X, Y or rotary axes are not. The tool is nowhere below its levels,
     /// wherever these are: below all at a link or part that tilts. At the top of Z's travel a table may.
     pub(super) fn blind_way(&self, step: &Step, ends: [Position; 2]) -> Option<BlindWay> {
         let is_unknown = |k: usize, end: &Position| end[k].is_none() && self.has_axis(k);
         let [starts_blind, ends_blind] =
-            ends.each_ref().map(|end| [0, 1, 3, 4, 5].into_iter().any(|k| is_unknown(k, end)));
+            ends.each_ref().map(|end| BESIDE_Z.into_iter().any(|k| is_unknown(k, end)));
         let [starts_at_level, ends_at_level] = ends.map(|end| end[2].is_some());
         // A way from an unknown height, but aside or about an axis between known places, is none that the operator moves.
         let goes_aside = !starts_at_level
             && ends_at_level
-            && [0, 1, 3, 4, 5]
+            && BESIDE_Z
                 .into_iter()
                 .any(|k| ends[0][k].is_some_and(|from| ends[1][k] != Some(from)));
         if !step.commanded.contains(&true) || !(starts_blind || ends_blind || goes_aside) {

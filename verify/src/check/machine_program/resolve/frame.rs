@@ -188,10 +188,8 @@ impl Resolver<'_> {
 
     /// Returns whether the length of the tool in the spindle is known: it is stated, or the offset in the tool's own register is.
     pub(in crate::check::machine_program) fn has_length(&self, state: &ControlState) -> bool {
-        let is_own =
-            |register: u32| state.tool.or(self.unnamed_tool).is_none_or(|tool| tool == register);
         self.stated_length(state).is_some()
-            || matches!(state.length, LengthOffset::On { register, length: Some(_) } if is_own(register))
+            || matches!(self.lengths(state), Ok(Located::Known(Lengths { is_known: true, .. })))
     }
 
     /// Returns the register of a length offset that is not that of the tool in the spindle, if both lengths are known.
@@ -204,7 +202,7 @@ impl Resolver<'_> {
         else {
             return None;
         };
-        let length = self.setup.lengths.get(&tool)?;
+        let length = self.stated_length(state)?;
         ((length - offset).abs() > LENGTH_TOLERANCE).then_some((register, tool))
     }
 
