@@ -1,5 +1,6 @@
 //! Cost of a tool: splits of its plan, operations of its code, and compile time.
 
+use std::f64::consts::FRAC_PI_2;
 use std::time::Instant;
 use syn::visit::{self, Visit};
 use touchoff_dsl::expr::value::{EvaluationPoint, Evaluator};
@@ -23,13 +24,28 @@ const ASSEMBLY: &str = r#"tool Assembly30 "12 mm bull nose end mill, ER32, HSK-A
     mount "holders/spindle_a63.tool" as spindle at z = 131.5;
 }"#;
 
-/// Returns the sources of all library tools, and of the assembly of 30 segments.
+/// Returns a ball on a shank that is drawn as 200 chords, with ends of so many decimals; 17 are those of doubles.
+fn chords(name: &str, decimals: usize) -> Source {
+    let end = |k: u32| {
+        let (sine, cosine) = (FRAC_PI_2 * f64::from(k) / 200.0).sin_cos();
+        format!("({:.decimals$}, {:.decimals$})", 5.0 * sine, 5.0 - 5.0 * cosine)
+    };
+    let ends: Vec<String> = (1..=200).map(end).collect();
+    let ball = format!("start (0, 0); line to {} as ball cutting;", ends.join(", "));
+    let text = format!(
+        "tool {name} {{ units mm; profile {{ {ball} line to (5, 60), (0, 60) as shank; }} }}"
+    );
+    Source::new(name, text)
+}
+
+/// Returns the sources of all library tools, of the assembly of 30 segments, and of balls drawn as chords.
 ///
 /// # Panics
 /// If the library's folder cannot be read.
 pub fn sources() -> Vec<Source> {
     let mut sources = library();
     sources.push(Source::new("Assembly30", ASSEMBLY).with_path(folder().join("assembly.tool")));
+    sources.extend([chords("Chords200", 17), chords("Chords200Rounded", 9)]);
     sources
 }
 

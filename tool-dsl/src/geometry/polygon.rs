@@ -163,8 +163,16 @@ pub(crate) fn do_touch(p: &Polygon, q: &Polygon, tolerance: f64) -> bool {
     !separates(p, q) && !separates(q, p)
 }
 
+/// Returns the part of a convex polygon that is within a distance of another's sides' lines, on the outside; `None` if that has no
+/// area.
+pub(crate) fn near_part(polygon: &Polygon, other: &Polygon, distance: f64) -> Option<Polygon> {
+    sides(other, distance).try_fold(polygon.clone(), |part, side| {
+        clipped(&part, &|p| side.inward(p) + distance * norm(side.along))
+    })
+}
+
 /// Returns the greatest distance between vertices of a polygon.
-fn extent(polygon: &Polygon) -> f64 {
+pub(crate) fn extent(polygon: &Polygon) -> f64 {
     let distances = polygon.iter().flat_map(|p| polygon.iter().map(|q| norm(minus(*p, *q))));
     distances.fold(0.0, f64::max)
 }

@@ -27,7 +27,7 @@ const MIN_CUT_FRACTION: f64 = 1e-3;
 /// The number of polygons of a feature that are halved.
 const MAX_HALVINGS: usize = 300;
 /// The part of a distance by which another feature may be nearer at a vertex of a polygon that is not halved.
-const LOOSE_FRACTION: f64 = 0.08;
+const LOOSE_FRACTION: f64 = 0.03;
 /// The least area that is halved, relative to the square of the section's size.
 const MIN_AREA: f64 = 1e-20;
 
@@ -42,7 +42,7 @@ const MAX_SEARCHED: usize = 1000;
 /// The part of a circle's radius that a polygon inside the circle may exceed it by.
 const LOOSE_RADIUS: f64 = 1.005;
 /// The difference of distances, in tolerances, above which a later feature is nearer than an earlier one.
-const TIE_TOLERANCES: f64 = 16.0;
+pub(super) const TIE_TOLERANCES: f64 = 16.0;
 /// The number of vertices up to which a polygon is fitted to a circle.
 const MAX_VERTICES: usize = 16;
 
@@ -259,7 +259,7 @@ impl Section<'_> {
     }
 
     fn is_straight(&self, feature: usize) -> bool {
-        self.features[feature].piece().is_some_and(|piece| self.outline[piece].circle.is_none())
+        self.line_direction(feature).is_some()
     }
 
     /// Returns the least difference of distances by which another feature counts as at least as near. Of two features that are

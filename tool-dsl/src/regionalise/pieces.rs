@@ -2,14 +2,16 @@
 //! these points: the sides of curves on which they lie.
 
 use super::Partition;
+use super::cover::TIE_TOLERANCES;
 use super::curve::Test;
 use super::section::{Feature, Section};
 use crate::expr::Graph;
 use crate::formula::{CurveIndex, Formula, NEGATIVE, POSITIVE, Signs};
 use crate::geometry::function::{CurveFunction, Distance};
-use crate::geometry::outline::{Point, bounding_box};
+use crate::geometry::outline::{Point, bounding_box, minus, norm};
 use crate::geometry::polygon::{
-    Polygon, are_boxes_apart, area, centroid, clipped, divided, do_touch, halved, sides, width,
+    Polygon, are_boxes_apart, area, centroid, clipped, divided, do_touch, extent, halved,
+    near_part, sides, width,
 };
 use std::collections::VecDeque;
 use std::rc::Rc;
@@ -80,6 +82,10 @@ struct Nearness {
 
 /// The distance, in sizes, within which the polygons of neighbours touch.
 const TOUCHING_FRACTION: f64 = 1e-9;
+/// The difference of distances, in sizes, up to which a border is left out.
+const LEFT_OUT_FRACTION: f64 = 4e-12;
+/// The extent, in sizes, up to which a border is left out.
+const MAX_LEFT_OUT_FRACTION: f64 = 4e-9;
 /// The distance from the outline's bounding box up to which the outside is sampled, in sizes.
 const SAMPLED_FRACTION: f64 = 0.25;
 /// The area that is sampled as one, relative to the square of the section's size.
@@ -164,14 +170,22 @@ impl Partition {
         }
     }
 
-    /// Returns pairs of features whose polygons touch, the first listed first.
+    /// Returns pairs of features between whose cells a border matters, the first listed first: their polygons touch, and not
+    /// only where all borders of many features meet.
     fn neighbours(&self, section: &Section<'_>) -> Vec<[usize; 2]> {
-        let tolerance = TOUCHING_FRACTION * section.size;
         let mut neighbours = Vec::new();
         for (a, cover) in self.covers.iter().enumerate() {
             for (b, other) in self.covers[..a].iter().enumerate() {
-                let mut pairs = cover.iter().flat_map(|p| other.iter().map(move |q| (p, q)));
-                if pairs.any(|(p, q)| do_touch(p, q, tolerance)) {
+                let contact = section.contact(a, b);
+                let pairs = cover.iter().flat_map(|p| other.iter().map(move |q| (p, q)));
+                let mut touching = pairs.filter(|(p, q)| do_touch(p, q, contact.distance));
+                let are_neighbours = if contact.least_extent == 0.0 {
+                    touching.next().is_some()
+                } else {
+                    let common = touching.filter_map(|(p, q)| near_part(p, q, contact.distance));
+                    extent(&common.flatten().collect()) > contact.least_extent
+                };
+                if are_neighbours {
                     neighbours.push([b, a]);
                 }
             }
@@ -225,7 +239,32 @@ impl Partition {
     }
 }
 
+/// When the polygons of two features have a border in common that matters.
+struct Contact {
+    /// The distance within which they touch.
+    distance: f64,
+    /// The extent of their contact up to which the border is left out.
+    least_extent: f64,
+}
+
 impl Section<'_> {
+    /// Returns when the polygons of two features have a border that matters. The difference of distances from two lines changes
+    /// at most at one rate everywhere. Polygons err by rounding of distances, divided by that rate. Where many borders meet in
+    /// one point but for rounding, as those of a ball drawn as chords do in its centre, two polygons touch only about it: of points
+    /// as near as that to a border, it does not matter which of the two has them, and all others are told apart by their other
+    /// neighbours' borders.
+    fn contact(&self, a: usize, b: usize) -> Contact {
+        let distance = TOUCHING_FRACTION * self.size;
+        let [Some(one), Some(other)] = [a, b].map(|feature| self.line_direction(feature)) else {
+            return Contact { distance, least_extent: 0.0 };
+        };
+        let rate = norm(minus(one, other));
+        Contact {
+            distance: distance.min(TIE_TOLERANCES * self.tolerance() / rate),
+            least_extent: self.size * MAX_LEFT_OUT_FRACTION.min(LEFT_OUT_FRACTION / rate),
+        }
+    }
+
     /// Returns a point with the nearest feature as its owner, or the outside; `None` if rounding decides about that.
     pub(crate) fn point(&self, p: Point) -> Option<Piece> {
         let distances: Vec<f64> =

@@ -189,6 +189,12 @@ impl<'o> Section<'o> {
         }
     }
 
+    /// Returns the direction of a feature that is a straight segment.
+    pub(super) fn line_direction(&self, feature: usize) -> Option<Point> {
+        let segment = &self.outline[self.features[feature].piece()?];
+        segment.circle.is_none().then(|| segment.tangent(false))
+    }
+
     /// Returns a point's signed distance from a feature's whole line or circle, or its distance from a corner.
     pub(crate) fn depth_at(&self, feature: usize, p: Point) -> f64 {
         match self.features[feature] {

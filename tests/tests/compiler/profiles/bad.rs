@@ -120,6 +120,14 @@ fn balls_drawn_as_chords_are_exact() {
     assert_exact(&drawn(4.0, 77, 5, 0.35 * PI));
     assert_exact(&drawn(6.6, 75, 5, 0.25 * PI));
     assert_exact(&drawn(2.0, 48, 3, 0.4 * PI));
+    // In full doubles all borders of 120 chords meet in one point but for rounding. Two neighbours have one, not each two of all.
+    for (decimals, end) in [(17, 0.0), (14, 0.0), (12, 0.0), (17, 0.4 * PI)] {
+        let ball = drawn(5.0, 120, decimals, end);
+        assert_exact(&ball);
+        let tool = touchoff_dsl::compile(&Source::new("t.tool", &ball.text()));
+        let curves = tool.into_tool().expect("as before").model.curves.len();
+        assert!(curves < 8 * 120, "{decimals} {end}: {curves}");
+    }
 }
 
 /// Beside a corner of the tip nothing but the corner is near, and the cell of its end goes on there under a wide flange.
