@@ -11,6 +11,7 @@ use crate::geometry::outline::{self, Point, dot, minus, norm};
 use crate::geometry::polygon::{hull, range};
 use crate::number::Number;
 use crate::regionalise::pieces::Piece;
+use std::collections::HashSet;
 use std::rc::Rc;
 
 /// The distance from the section's middle up to which meetings are looked for, in sizes.
@@ -19,6 +20,12 @@ const REACH: f64 = 8.0;
 const BOX_FRACTION: f64 = 1e-3;
 /// The distance from the middle of a box up to which a meeting is the box's, in diagonals.
 const NEAR_BOX: f64 = 2.0;
+/// The side of the squares, in tolerances, of whose meetings one stands for all.
+const SAME_MEETING: f64 = 0.125;
+/// The length of the last step of Newton's method, in tolerances. Where curves touch, the point is as far away as that.
+const LAST_STEP: f64 = 0.01;
+/// The length of a step, in tolerances, that rounding may make of none.
+const ROUNDED_STEP: f64 = 100.0;
 /// The number of steps of Newton's method. Where curves touch, each halves the distance.
 const MAX_STEPS: usize = 60;
 
@@ -45,8 +52,8 @@ impl Cells<'_> {
                 continue;
             }
             let Some(piece) = self.geometry.point(p) else { continue };
-            // Within what the point's pieces take for both sides of a curve.
-            let half = 0.5 * self.tolerance;
+            // Within what the point's pieces take for both sides of a curve; for it and all meetings that it stands for.
+            let half = (0.5 + SAME_MEETING) * self.tolerance;
             let [d, z] = p.map(|x| Interval::new(x - half, x + half));
             encloser.set(Cell::half_plane(Interval::new(d.low.max(0.0), d.high), z));
             let (mut loss, mut error) = (0.0f64, 0.0f64);
@@ -68,7 +75,8 @@ impl Cells<'_> {
         wrong
     }
 
-    /// Returns the points where curves of a tree meet, and where one may meet itself. Boxes are halved until they are small; one that
+    /// Returns the points where curves of a tree meet, and where one may meet itself, one of those in a square that is smaller than
+    /// rounding. Boxes are halved until they are small; one that
     /// fewer than two curves cross, or with one owner, has no meeting that matters.
     fn meetings(&self, tree: &Tree) -> Vec<Point> {
         let (middle, reach) = (self.middle(), REACH * self.size);
@@ -114,11 +122,16 @@ impl Cells<'_> {
                 );
             }
         }
+        let side = SAME_MEETING * self.tolerance;
+        let square = |p: &Point| p.map(|x| (x / side).round().to_bits());
+        let mut squares = HashSet::new();
+        points.retain(|p| squares.insert(square(p)));
         points
     }
 
     /// Returns a point where two curves meet, by Newton's method from a point near it.
     fn meeting(&self, curves: [CurveIndex; 2], mut p: Point) -> Option<Point> {
+        let mut last_step = f64::INFINITY;
         for _ in 0..MAX_STEPS {
             let [(one, [a, b]), (other, [c, d])] =
                 curves.map(|curve| self.shapes[curve].value_and_gradient(p));
@@ -128,9 +141,13 @@ impl Cells<'_> {
                 break;
             }
             p = minus(p, step);
-            if norm(step) <= f64::EPSILON * self.tolerance {
+            let length = norm(step);
+            // Between nearly parallel curves rounding moves the point farther than that, again and again.
+            let is_rounding = length >= last_step && length <= ROUNDED_STEP * self.tolerance;
+            if length <= LAST_STEP * self.tolerance || is_rounding {
                 break;
             }
+            last_step = length;
         }
         // Rounding may lead beyond the axis.
         if p[0] < 0.0 && p[0] >= -self.tolerance {
