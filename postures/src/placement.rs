@@ -3,8 +3,9 @@
 
 use nalgebra::{Point3, Vector3};
 use std::f64::consts::PI;
-use touchoff::tool::{Circle, Evaluations, Outputs, PointBatch, ProfileSegment, ToolInfo};
+use touchoff::tool::{Circle, Evaluations, Outputs, PointBatch, ToolInfo};
 use touchoff::{Level, Tool, Unit};
+use touchoff_plane::angle_between;
 
 /// A point of contact on the part's surface.
 #[derive(Clone, Copy, Debug)]
@@ -122,11 +123,12 @@ impl ContactSites {
         let mut sites = Vec::new();
         // The profile continues beyond the axis as its mirror image.
         let mut previous = info.outline.first().map(|first| {
-            let [[d, z], _] = unit_tangents(first);
+            let [d, z] = first.geometry().tangent(0);
             Previous { tangent: [d, -z], is_cutting: info.surface(first.surface).cutting }
         });
         for segment in info.outline.iter() {
-            let tangents = unit_tangents(segment);
+            let geometry = segment.geometry();
+            let tangents = [0, 1].map(|end| geometry.tangent(end));
             let is_cutting = info.surface(segment.surface).cutting;
             if is_cutting {
                 if let Some(Previous { tangent, is_cutting: true }) = previous {
@@ -194,7 +196,7 @@ impl ContactSite {
         [before, after]: [[f64; 2]; 2],
         length: f64,
     ) -> Option<ContactSite> {
-        let turn = cross(before, after).atan2(dot(before, after));
+        let turn = angle_between(before, after);
         let from = normal_angle(before);
         // The corner's material spans an angle of π less `turn` about the opposite of the mean normal. Halfway from there to
         // a surface, a point is nearer to that surface than to the other.
@@ -231,35 +233,9 @@ struct Previous {
     is_cutting: bool,
 }
 
-/// Returns the unit tangents at the beginning and the end of a profile segment.
-fn unit_tangents(segment: &ProfileSegment) -> [[f64; 2]; 2] {
-    let ends = [segment.from, segment.to];
-    let Some(Circle { centre, convex, .. }) = segment.circle else {
-        let [from, to] = ends;
-        return [unit([to[0] - from[0], to[1] - from[1]]); 2];
-    };
-    ends.map(|end| {
-        let [d, z] = unit([end[0] - centre[0], end[1] - centre[1]]);
-        if convex { [-z, d] } else { [z, -d] }
-    })
-}
-
 /// Returns the angle of the outward normal for a direction of travel with the material on its left, from -π to π.
 fn normal_angle([d, z]: [f64; 2]) -> f64 {
     (-d).atan2(z)
-}
-
-fn unit(vector: [f64; 2]) -> [f64; 2] {
-    let length = vector[0].hypot(vector[1]);
-    vector.map(|component| component / length)
-}
-
-fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[1] - a[1] * b[0]
-}
-
-fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[0] + a[1] * b[1]
 }
 
 #[cfg(test)]

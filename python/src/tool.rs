@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use touchoff::tool::{Circle, Interpreted, ProfileSegment, ToolError, ToolInfo};
+use touchoff::tool::{Interpreted, ToolError, ToolInfo};
 use touchoff_drawing::{Content, TextRendering, svg};
 use touchoff_dsl::compile_with_arguments;
 use touchoff_dsl::source::Source;
@@ -226,18 +226,7 @@ impl Tool {
     #[getter]
     fn radius(&self) -> f64 {
         let info = self.loaded.info();
-        let widest = info.outline.iter().map(|ProfileSegment { from, to, circle, .. }| {
-            let ends = from[0].max(to[0]);
-            match circle {
-                // An arc is widest at the height of its centre.
-                Some(Circle { centre, radius, convex: true })
-                    if from[1].min(to[1]) <= centre[1] && centre[1] <= from[1].max(to[1]) =>
-                {
-                    ends.max(centre[0] + radius)
-                }
-                _ => ends,
-            }
-        });
+        let widest = info.outline.iter().map(|segment| segment.geometry().bounding_box()[1][0]);
         widest.reduce(f64::max).unwrap_or_else(|| info.radius())
     }
 

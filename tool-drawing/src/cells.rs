@@ -6,8 +6,8 @@
 use super::section::{Edge, Section, Split, simplified};
 use super::stroke::{MAX_TURN, Stroke};
 use touchoff_dsl::model::Model;
-use touchoff_dsl::vector::{Point, cross, minus, norm};
 use touchoff_dsl::{Features, Normal, NormalEnd};
+use touchoff_plane::{Point, cross, minus, norm};
 
 /// The parameters of a feature's outermost normals are this and its difference from 1. At the very ends they are limits.
 const END: f64 = 2e-5;
@@ -23,11 +23,7 @@ pub(super) fn cells(model: &Model, features: &Features<'_>, flat: f64) -> Sectio
     let mut section = Section::default();
     let mut material = Vec::new();
     for segment in model.outline() {
-        let [from, to] = segment.ends;
-        let mut strokes = vec![Stroke::line(from, to)];
-        if let Some((centre, radius, convex)) = segment.circle {
-            strokes = arcs([from, to], (centre, radius), convex);
-        }
+        let strokes = strokes(&segment);
         material.extend(strokes.iter().flat_map(|stroke| stroke.points(flat)));
         material.extend(strokes.last().map(|last| last.to));
         section.edges.push(Edge { surface: segment.surface, strokes, exact: true });
@@ -42,20 +38,15 @@ pub(super) fn cells(model: &Model, features: &Features<'_>, flat: f64) -> Sectio
     section
 }
 
-/// Returns an arc as strokes, of which each is less than half a circle.
-fn arcs([from, to]: [Point; 2], circle: (Point, f64), convex: bool) -> Vec<Stroke> {
-    let arc = Stroke { from, to, circle: Some(circle) };
-    let turn = arc.turn();
-    // The material is on the left.
-    if (turn > 0.0) == convex && turn.abs() < MAX_TURN {
-        return vec![arc];
+/// Returns a segment as strokes, of which each is less than half a circle.
+fn strokes(segment: &touchoff_plane::Segment) -> Vec<Stroke> {
+    let [from, to] = segment.ends;
+    let whole = Stroke { from, to, circle: segment.circle.map(|arc| (arc.centre, arc.radius)) };
+    if segment.turn().abs() < MAX_TURN {
+        return vec![whole];
     }
-    let (centre, radius) = circle;
-    let [d, z] = minus(to, from).map(|part| part / norm(minus(to, from)));
-    // The middle of the arc is to the right of its chord, or to the left of a concave one's.
-    let side = if convex { radius } else { -radius };
-    let middle = [centre[0] + side * z, centre[1] - side * d];
-    vec![Stroke { to: middle, ..arc }, Stroke { from: middle, ..arc }]
+    let middle = segment.place(0.5).point;
+    vec![Stroke { to: middle, ..whole }, Stroke { from: middle, ..whole }]
 }
 
 /// The cell of one feature.

@@ -5,7 +5,7 @@ use touchoff_dsl::bound::Extent;
 use touchoff_dsl::expr::value::{EvaluationPoint, Evaluator};
 use touchoff_dsl::formula::CurveIndex;
 use touchoff_dsl::model::Model;
-use touchoff_dsl::vector::{Point, cross, minus, norm};
+use touchoff_plane::{Point, cross, minus, norm};
 
 /// The step of central differences, in the tool's size.
 const DIFFERENCE_STEP: f64 = 1e-6;

@@ -8,7 +8,7 @@ use super::view::View;
 use super::{Content, ROUNDING_FRACTION};
 use touchoff_dsl::CheckedTool;
 use touchoff_dsl::model::Model;
-use touchoff_dsl::vector::Point;
+use touchoff_plane::Point;
 
 /// The largest extent of the detail on the sheet: full width and height, in sheet units.
 const MAX_EXTENT: [f64; 2] = [240.0, 500.0];

@@ -5,7 +5,7 @@ use super::regions::{Marks, draw_arrows, singular_points};
 use super::sheet::{Anchor, Look, Sheet, lines};
 use super::{Content, paint};
 use touchoff_dsl::model::Model;
-use touchoff_dsl::vector::Point;
+use touchoff_plane::Point;
 
 /// The height of capitals; `LINE_HEIGHT` is the height of a line. Sheet units.
 const TEXT_SIZE: f64 = 7.5;

@@ -9,7 +9,7 @@ use super::sheet::{Anchor, Look, SECONDARY_COLOUR, Sheet, lines, trimmed};
 use super::stroke::Stroke;
 use super::{ROUNDING_FRACTION, paint};
 use touchoff_dsl::model::Unit;
-use touchoff_dsl::vector::{Point, cross, dot, minus, norm};
+use touchoff_plane::{Point, cross, dot, minus, norm};
 
 /// The slope up to which a cone is a cylinder on a drawing: its angle would be written as 0.
 const MIN_CONE_SLOPE: f64 = 5e-5;

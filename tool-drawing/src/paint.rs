@@ -11,7 +11,7 @@ use super::stroke::Stroke;
 use super::{Content, Picture};
 use std::f64::consts::PI;
 use touchoff_dsl::model::Model;
-use touchoff_dsl::vector::Point;
+use touchoff_plane::Point;
 
 /// The look of hatch lines, and their distance in sheet units.
 const HATCH: &str = "fill=\"none\" stroke=\"#c3c9d2\" stroke-width=\".6\"";

@@ -9,7 +9,7 @@ use crate::view::View;
 use crate::{Content, ROUNDING_FRACTION, notes, paint};
 use touchoff_dsl::CheckedTool;
 use touchoff_dsl::model::Model;
-use touchoff_dsl::vector::Point;
+use touchoff_plane::Point;
 
 /// The largest extent of a tool on the sheet: full width and height, in sheet units.
 const MAX_TOOL_EXTENT: [f64; 2] = [330.0, 500.0];

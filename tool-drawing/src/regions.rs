@@ -9,7 +9,7 @@ use super::view::View;
 use super::{Content, ROUNDING_FRACTION, paint};
 use touchoff_dsl::expr::value::{EvaluationPoint, Evaluator};
 use touchoff_dsl::model::Model;
-use touchoff_dsl::vector::{Point, cross, minus, norm};
+use touchoff_plane::{Point, cross, minus, norm};
 
 /// The error of a direction's length beyond which it is undefined, as at a centre.
 const MAX_LENGTH_ERROR: f64 = 1e-3;

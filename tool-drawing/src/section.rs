@@ -7,8 +7,8 @@ use super::cells::cells;
 use super::curves::{Curves, Plane};
 use super::stroke::Stroke;
 use super::trace::{Border, Side, loops, trace};
-use touchoff_dsl::vector::{Point, cross, minus, norm};
 use touchoff_dsl::{CheckedTool, Features};
+use touchoff_plane::{Point, cross, minus, norm};
 
 /// The vertices of an area's border, in order.
 pub(super) type Polygon = Vec<Point>;

@@ -2,7 +2,7 @@
 
 use super::section::Polygon;
 use super::view::View;
-use touchoff_dsl::vector::{Point, cross, dot, minus, norm};
+use touchoff_plane::{Point, cross, dot, minus, norm};
 
 /// The number of squares that are divided in search of the point with most room.
 const MAX_SQUARES: usize = 300;

@@ -3,7 +3,7 @@
 use super::lettering::{scale, strokes, width};
 use super::stroke::Stroke;
 use std::fmt::Write;
-use touchoff_dsl::vector::Point;
+use touchoff_plane::Point;
 
 /// The end of a line of text that is anchored at its position.
 #[derive(Clone, Copy, PartialEq)]

@@ -1,7 +1,7 @@
 //! Strokes: the lines and arcs of a drawing.
 
 use std::f64::consts::PI;
-use touchoff_dsl::vector::{Point, cross, dot, minus, norm};
+use touchoff_plane::{Point, angle_between, cross, dot, minus, norm, turned};
 
 /// The greatest angle of an arc that is made one stroke: less than half a circle, by more than rounding.
 pub(super) const MAX_TURN: f64 = 0.9 * PI;
@@ -34,8 +34,7 @@ impl Stroke {
     /// Returns the angle that an arc turns by, 0 for a line.
     pub(super) fn turn(&self) -> f64 {
         self.circle.map_or(0.0, |(centre, _)| {
-            let (a, b) = (minus(self.from, centre), minus(self.to, centre));
-            cross(a, b).atan2(dot(a, b))
+            angle_between(minus(self.from, centre), minus(self.to, centre))
         })
     }
 
@@ -44,9 +43,8 @@ impl Stroke {
         let Some((centre, _)) = self.circle else {
             return [0, 1].map(|k| self.from[k] + share * (self.to[k] - self.from[k]));
         };
-        let (sin, cos) = (share * self.turn()).sin_cos();
-        let a = minus(self.from, centre);
-        [centre[0] + a[0] * cos - a[1] * sin, centre[1] + a[0] * sin + a[1] * cos]
+        let [x, y] = turned(minus(self.from, centre), share * self.turn());
+        [centre[0] + x, centre[1] + y]
     }
 
     /// Returns the length.

@@ -12,7 +12,7 @@ use super::stroke::{MAX_TURN, Stroke, circle};
 use std::collections::{HashMap, HashSet};
 use touchoff_dsl::formula::CurveIndex;
 use touchoff_dsl::plan::Tree;
-use touchoff_dsl::vector::{Point, minus, norm};
+use touchoff_plane::{Point, minus, norm};
 
 /// The gain of the sine of an angle for which another pair of curves is taken for a joint, so that equal ones keep their order.
 const MIN_GAIN: f64 = 1e-9;

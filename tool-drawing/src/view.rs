@@ -4,7 +4,7 @@
 use super::ROUNDING_FRACTION;
 use super::section::{Section, Split};
 use super::stroke::Stroke;
-use touchoff_dsl::vector::Point;
+use touchoff_plane::Point;
 
 /// The height of a shortened section, as a multiple of its width.
 const MAX_ASPECT_RATIO: f64 = 4.8;

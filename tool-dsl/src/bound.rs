@@ -571,7 +571,9 @@ fn rounded_up(value: f64, steps: f64) -> f64 {
 /// Returns heights at which the radius may jump.
 fn levels(model: &Model) -> Vec<f64> {
     match &model.profile {
-        Some(profile) => profile.outline.iter().flat_map(|s| s.ends()).map(|end| end[1]).collect(),
+        Some(profile) => {
+            profile.outline.iter().flat_map(|s| s.geometry.ends).map(|end| end[1]).collect()
+        }
         None => model.curves.iter().filter_map(|curve| level(model, curve.value)).collect(),
     }
 }

@@ -34,7 +34,6 @@ pub mod resolve;
 pub mod source;
 pub mod syntax;
 mod validate;
-pub mod vector;
 
 pub use checked::CheckedTool;
 pub use compile::{Accepted, Compiled, compile, compile_with_arguments};

@@ -236,26 +236,11 @@ impl Model {
         self.profile.is_some()
     }
 
-    /// Returns the segments of the profile, in order, in doubles; none without a profile.
-    pub fn outline(&self) -> impl Iterator<Item = ProfileSegment> + '_ {
+    /// Returns the segments of the profile, in order, in the tool's frame and the file's unit; none without a profile.
+    pub fn outline(&self) -> impl Iterator<Item = touchoff_plane::Segment> + '_ {
         let segments = self.profile.iter().flat_map(|profile| &profile.outline);
-        segments.map(|segment| ProfileSegment {
-            ends: segment.ends(),
-            circle: segment.round(),
-            surface: segment.surface,
-        })
+        segments.map(|segment| segment.geometry)
     }
-}
-
-/// A segment of a profile, as `[d, z]` in the tool's frame and the file's unit.
-#[derive(Clone, Copy, Debug)]
-pub struct ProfileSegment {
-    /// The start point and the end point.
-    pub ends: [[f64; 2]; 2],
-    /// The centre and radius of an arc, and whether the material is inside the circle.
-    pub circle: Option<([f64; 2], f64, bool)>,
-    /// The index of its surface.
-    pub surface: usize,
 }
 
 /// The transform from the file's z to the tool's: `z_tool = z_file - tip`, or `tip - z_file` if the spindle

@@ -9,6 +9,7 @@ use crate::formula::Formula;
 use crate::model::{Model, Profile};
 use crate::plan::{MAX_TESTS, PlannedTool, Tree};
 use crate::regionalise::overlay::{ConditionedPart, Division};
+use touchoff_plane::Circle;
 
 /// A guarantee that does not hold: a fault of the compiler.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,7 +67,7 @@ pub(crate) fn model(model: &Model) -> Result<(), Broken> {
         expressions(model, "an output", region.outputs.roots())?;
     }
     let Some(profile) = &model.profile else { return Ok(()) };
-    profile.outline.iter().try_for_each(|segment| surface(segment.surface))?;
+    profile.outline.iter().try_for_each(|segment| surface(segment.geometry.surface))?;
     outline(profile)?;
     let count = model.regions.len();
     let features = profile.inner.section().features().len();
@@ -182,16 +183,16 @@ fn outline(profile: &Profile) -> Result<(), Broken> {
         return Err(Broken::Outline);
     };
     let is_on_axis = |[d, _]: [f64; 2]| d == 0.0;
-    let is_closed = is_on_axis(first.ends()[0])
-        && is_on_axis(last.ends()[1])
-        && segments.windows(2).all(|pair| pair[0].ends()[1] == pair[1].ends()[0]);
+    let is_closed = is_on_axis(first.geometry.ends[0])
+        && is_on_axis(last.geometry.ends[1])
+        && segments.windows(2).all(|pair| pair[0].geometry.ends[1] == pair[1].geometry.ends[0]);
     // Twice the signed area: that of the chords, and that between each arc and its chord.
     let area: f64 = segments
         .iter()
         .map(|segment| {
-            let [[d, z], [e, y]] = segment.ends();
-            let [_, turn] = segment.angles();
-            let radius = segment.round().map_or(0.0, |(_, radius, _)| radius);
+            let [[d, z], [e, y]] = segment.geometry.ends;
+            let turn = segment.geometry.turn();
+            let radius = segment.geometry.circle.map_or(0.0, |Circle { radius, .. }| radius);
             d * y - e * z + radius * radius * (turn - turn.sin())
         })
         .sum();

@@ -74,30 +74,11 @@ fn revolve(info: &ToolInfo, scale: f64) -> Triangles {
 
 /// Returns points of a segment with the normals there, from its start to its end.
 fn points(segment: &ProfileSegment) -> Vec<ProfilePoint> {
-    let Some(circle) = segment.circle else {
-        let [d, z] = [0, 1].map(|k| segment.to[k] - segment.from[k]);
-        let length = d.hypot(z);
-        let normal = [z / length, -d / length];
-        return [segment.from, segment.to].map(|at| ProfilePoint { at, normal }).into();
-    };
-    let [start, end] =
-        [segment.from, segment.to].map(|[d, z]| (z - circle.centre[1]).atan2(d - circle.centre[0]));
-    // Counter-clockwise, with the normal away from the centre, if the material is inside the circle.
-    let sense = if circle.convex { 1.0 } else { -1.0 };
-    let turn = (sense * (end - start)).rem_euclid(TAU);
-    let chords = (turn / MAX_CHORD).ceil().max(1.0);
-    let points = (0..=chords as usize).map(|k| {
-        let (sin, cos) = (start + sense * turn * (k as f64 / chords)).sin_cos();
-        let [d, z] = [cos, sin].map(|part| part * circle.radius);
-        let at = [circle.centre[0] + d, circle.centre[1] + z];
-        ProfilePoint { at, normal: [sense * cos, sense * sin] }
-    });
-    let mut points: Vec<ProfilePoint> = points.collect();
+    let geometry = segment.geometry();
+    let chords = (geometry.turn().abs() / MAX_CHORD).ceil().max(1.0);
     // Exactly the ends, so that no gap opens toward the next segment, and none on the axis.
-    let last = points.len() - 1;
-    points[0].at = segment.from;
-    points[last].at = segment.to;
-    points
+    let places = geometry.places(chords as usize);
+    places.map(|place| ProfilePoint { at: place.point, normal: place.outward() }).collect()
 }
 
 /// Cells of the grid along the longest side, and halvings of an edge that crosses the surface.

@@ -4,7 +4,7 @@
 use crate::picture::render::{Facet, Paint};
 use nalgebra::{Point3, Vector3};
 use std::collections::HashMap;
-use touchoff::tool::{Circle, ProfileSegment, ToolInfo};
+use touchoff::tool::{ProfileSegment, ToolInfo};
 use touchoff::{Mesh, Pose, Unit};
 
 /// Number of pieces that the largest extent of a body is divided into, if it is divided.
@@ -213,23 +213,8 @@ fn widest<'l>(lines: impl IntoIterator<Item = &'l ProfileLine>) -> f64 {
 
 /// Returns points of a segment, with chords in place of an arc.
 fn points(segment: &ProfileSegment) -> Vec<[f64; 2]> {
-    let Some(Circle { centre, radius, convex }) = segment.circle else {
-        return vec![segment.from, segment.to];
-    };
-    let [from, mut to] =
-        [segment.from, segment.to].map(|[d, z]| (z - centre[1]).atan2(d - centre[0]));
-    // Convex arcs run counter-clockwise.
-    let turn = std::f64::consts::TAU;
-    if convex && to < from {
-        to += turn;
-    } else if !convex && to > from {
-        to -= turn;
-    }
-    let inner = (1..CHORDS).map(|k| {
-        let (sine, cosine) = (from + (to - from) * k as f64 / CHORDS as f64).sin_cos();
-        [centre[0] + radius * cosine, centre[1] + radius * sine]
-    });
-    std::iter::once(segment.from).chain(inner).chain([segment.to]).collect()
+    let steps = if segment.circle.is_some() { CHORDS } else { 1 };
+    segment.geometry().places(steps).map(|place| place.point).collect()
 }
 
 #[cfg(test)]

@@ -2,6 +2,9 @@
 
 pub(crate) type Point = [f64; 3];
 
+/// A point of the half plane, `[d, z]`.
+pub(crate) type MeridianPoint = touchoff_plane::Point;
+
 pub(crate) fn minus(a: Point, b: Point) -> Point {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }

@@ -4,6 +4,7 @@ use crate::id::SurfaceId;
 use crate::interval::Interval;
 use crate::unit::Unit;
 use std::borrow::Cow;
+use touchoff_plane::{Circle, Segment};
 
 /// A tool's name, surfaces, regions and extent, and the bounds that are proved of its depth.
 #[derive(Clone, Debug, PartialEq)]
@@ -161,29 +162,6 @@ pub struct ProfileSegment {
     pub surface: SurfaceId,
 }
 
-/// The circle of an arc.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Circle {
-    /// The centre, as `[d, z]`.
-    pub centre: [f64; 2],
-    /// The radius.
-    pub radius: f64,
-    /// True if the material lies inside the circle; the arc then runs counter-clockwise.
-    pub convex: bool,
-}
-
-impl Circle {
-    /// Returns the circle of an arc that bulges out of the material.
-    pub const fn convex(centre: [f64; 2], radius: f64) -> Circle {
-        Circle { centre, radius, convex: true }
-    }
-
-    /// Returns the circle of an arc that bulges into the material.
-    pub const fn concave(centre: [f64; 2], radius: f64) -> Circle {
-        Circle { centre, radius, convex: false }
-    }
-}
-
 impl ProfileSegment {
     /// Returns a line segment.
     pub const fn line(from: [f64; 2], to: [f64; 2], surface: usize) -> ProfileSegment {
@@ -200,38 +178,9 @@ impl ProfileSegment {
         }
     }
 
-    /// Returns its length.
-    pub fn length(&self) -> f64 {
-        match self.circle {
-            Some(circle) => circle.radius * self.sweep(&circle).abs(),
-            None => (self.to[0] - self.from[0]).hypot(self.to[1] - self.from[1]),
-        }
-    }
-
-    /// Returns the point at a fraction of its length, from 0 to 1, and the unit vector along it there, to within rounding.
-    pub fn place(&self, fraction: f64) -> ([f64; 2], [f64; 2]) {
-        let Some(circle) = self.circle else {
-            let [r, z] = [0, 1].map(|k| self.to[k] - self.from[k]);
-            let length = r.hypot(z);
-            let point = [0, 1].map(|k| self.from[k] + fraction * (self.to[k] - self.from[k]));
-            return (point, [r / length, z / length]);
-        };
-        let [r, z] = [0, 1].map(|k| self.from[k] - circle.centre[k]);
-        let sweep = self.sweep(&circle);
-        let (sine, cosine) = (z.atan2(r) + fraction * sweep).sin_cos();
-        let point =
-            [circle.centre[0] + circle.radius * cosine, circle.centre[1] + circle.radius * sine];
-        (point, [-sine * sweep.signum(), cosine * sweep.signum()])
-    }
-
-    /// Returns the angle of an arc, above 0 if it runs counter-clockwise.
-    fn sweep(&self, circle: &Circle) -> f64 {
-        let [from, to] = [self.from, self.to]
-            .map(|end| (end[1] - circle.centre[1]).atan2(end[0] - circle.centre[0]));
-        match circle.convex {
-            true => (to - from).rem_euclid(std::f64::consts::TAU),
-            false => -(from - to).rem_euclid(std::f64::consts::TAU),
-        }
+    /// Returns it as geometry: its distance, nearest point and tangents.
+    pub fn geometry(&self) -> Segment {
+        Segment::new([self.from, self.to], self.circle, self.surface.0)
     }
 }
 

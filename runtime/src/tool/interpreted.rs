@@ -3,9 +3,9 @@
 use super::compiled::{evaluate_blocks, evaluate_points};
 use super::plan::{Eight, Memory, Plan};
 use super::{
-    BatchEvaluator, Circle, DepthBounds, Derivatives, Dual, Enclosure, EnvelopeSlab,
-    EvaluationEnclosure, Evaluations, OutputSelection, Outputs, PointBatch, ProfileSegment, Region,
-    Surface, Symmetry, Ternary, Tool, ToolInfo,
+    BatchEvaluator, DepthBounds, Derivatives, Dual, Enclosure, EnvelopeSlab, EvaluationEnclosure,
+    Evaluations, OutputSelection, Outputs, PointBatch, ProfileSegment, Region, Segment, Surface,
+    Symmetry, Ternary, Tool, ToolInfo,
 };
 use crate::debug::debug;
 use crate::id::SurfaceId;
@@ -182,9 +182,8 @@ fn info(tool: &CheckedTool) -> ToolInfo {
     }
 }
 
-fn profile_segment(segment: model::ProfileSegment) -> ProfileSegment {
-    let model::ProfileSegment { ends: [from, to], circle, surface } = segment;
-    let circle = circle.map(|(centre, radius, convex)| Circle { centre, radius, convex });
+fn profile_segment(segment: Segment) -> ProfileSegment {
+    let Segment { ends: [from, to], circle, surface, .. } = segment;
     ProfileSegment { from, to, circle, surface: SurfaceId(surface) }
 }
 

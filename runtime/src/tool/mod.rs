@@ -5,7 +5,7 @@
 //! frame) and in the unit of the tool's file, unless stated otherwise.
 
 mod compiled;
-pub(crate) mod distance;
+mod distance;
 mod enclosure;
 mod info;
 #[cfg(feature = "interpreter")]
@@ -17,12 +17,11 @@ mod plan;
 pub use compiled::{Evaluators, LaneEvaluation, PointEvaluation};
 pub(crate) use enclosure::bit;
 pub use enclosure::{Enclosure, EvaluationEnclosure, Ternary};
-pub use info::{
-    Circle, DepthBounds, EnvelopeSlab, ProfileSegment, Region, Surface, Symmetry, ToolInfo,
-};
+pub use info::{DepthBounds, EnvelopeSlab, ProfileSegment, Region, Surface, Symmetry, ToolInfo};
 #[cfg(feature = "interpreter")]
 pub use interpreted::{Interpreted, ToolError};
 pub use lane::{Dual, Lane};
+pub use touchoff_plane::{Circle, Place, Segment};
 
 use crate::interval::Interval;
 use fearless_simd::Level;

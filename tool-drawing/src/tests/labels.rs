@@ -3,7 +3,7 @@
 use super::{folder, library};
 use crate::lettering::width;
 use crate::{Content, TextRendering, svg};
-use touchoff_dsl::vector::Point;
+use touchoff_plane::Point;
 
 /// The height of capitals at scale 1.
 const CAPITAL_HEIGHT: f64 = 14.0;

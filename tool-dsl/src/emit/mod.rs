@@ -23,6 +23,7 @@ use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
 use std::fmt::Write;
 use tokens::literal;
+use touchoff_plane::Circle;
 
 /// The part of a tool's size below which a coordinate is shown as 0.
 const ROUNDING_FRACTION: f64 = 1e-9;
@@ -149,7 +150,7 @@ fn info(tool: &CheckedTool) -> TokenStream {
         let surface = piece.surface;
         match piece.circle {
             None => quote! { ProfileSegment::line([#fd, #fz], [#td, #tz], #surface) },
-            Some((centre, radius, convex)) => {
+            Some(Circle { centre, radius, convex }) => {
                 let ([cd, cz], radius) = (centre.map(literal), literal(radius));
                 let circle = if convex { quote! { Circle::convex } } else { quote! { Circle::concave } };
                 quote! { ProfileSegment::arc([[#fd, #fz], [#td, #tz]], #circle([#cd, #cz], #radius), #surface) }

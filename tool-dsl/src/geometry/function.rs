@@ -7,6 +7,7 @@ use crate::expr::value::{EvaluationPoint, Evaluator};
 use crate::expr::{Graph, Id};
 use crate::formula::{ANY_SIGN, Curve, NEGATIVE, POSITIVE, Signs};
 use crate::number::Number;
+use touchoff_plane::Circle;
 
 /// The step of central differences: the root of the rounding of values is some 1e-8, and their curvature errs by its square.
 const DIFFERENCE_STEP: f64 = 1e-6;
@@ -45,12 +46,12 @@ pub(crate) enum Distance {
 impl Distance {
     /// Returns the distance from a segment's line or circle.
     pub(crate) fn of(segment: &Segment) -> Distance {
-        match segment.round() {
+        match segment.geometry.circle {
             None => {
-                let [d, z] = segment.tangent(false);
-                Distance::Line { from: segment.ends()[0], normal: [-z, d] }
+                let [d, z] = segment.geometry.tangent(0);
+                Distance::Line { from: segment.geometry.ends[0], normal: [-z, d] }
             }
-            Some((centre, radius, convex)) => {
+            Some(Circle { centre, radius, convex }) => {
                 Distance::Circle { centre, radius, sign: if convex { -1.0 } else { 1.0 } }
             }
         }

@@ -5,7 +5,7 @@
 use crate::expr::{Coord, Graph, Id};
 use crate::number::Number;
 use crate::source::Span;
-pub(crate) use crate::vector::{Point, cross, dot, minus, norm};
+pub(crate) use touchoff_plane::{Point, cross, dot, minus, norm};
 
 /// The size below which a component of a unit vector has cancelled in 256 bits.
 pub(crate) const CANCELLED: f64 = 1e-60;
@@ -21,7 +21,7 @@ pub(crate) const TANGENT_SINE: f64 = 1e-9;
 
 /// The circle of an arc.
 #[derive(Clone, Debug)]
-pub(crate) struct Circle {
+pub(crate) struct ExactCircle {
     pub(crate) centre: ExactPoint,
     pub(crate) radius: Number,
     /// True if the material is inside the circle.
@@ -33,136 +33,30 @@ pub(crate) struct Circle {
 pub(crate) struct Segment {
     pub(crate) from: ExactPoint,
     pub(crate) to: ExactPoint,
-    pub(crate) circle: Option<Circle>,
-    pub(crate) surface: usize,
+    pub(crate) circle: Option<ExactCircle>,
     pub(crate) span: Span,
     /// The same geometry in doubles.
-    flat: Flat,
-}
-
-/// A segment in doubles.
-#[derive(Clone, Debug)]
-struct Flat {
-    from: Point,
-    to: Point,
-    /// The unit direction of travel of a line.
-    direction: Point,
-    /// The centre, radius and convexity of an arc.
-    circle: Option<(Point, f64, bool)>,
-}
-
-impl Flat {
-    fn new(from: &ExactPoint, to: &ExactPoint, circle: Option<&Circle>) -> Flat {
-        let [from, to] = [from, to].map(doubles);
-        let circle =
-            circle.map(|circle| (doubles(&circle.centre), circle.radius.to_f64(), circle.convex));
-        Flat { from, to, direction: unit(minus(to, from)), circle }
-    }
+    pub(crate) geometry: touchoff_plane::Segment,
 }
 
 pub(crate) fn doubles(point: &ExactPoint) -> Point {
     [point[0].to_f64(), point[1].to_f64()]
 }
 
-fn unit(a: Point) -> Point {
-    let length = norm(a);
-    [a[0] / length, a[1] / length]
-}
-
 impl Segment {
     pub(crate) fn new(
         [from, to]: [ExactPoint; 2],
-        circle: Option<Circle>,
+        circle: Option<ExactCircle>,
         surface: usize,
         span: Span,
     ) -> Segment {
-        let flat = Flat::new(&from, &to, circle.as_ref());
-        Segment { from, to, circle, surface, span, flat }
-    }
-
-    /// Returns its start and end.
-    pub(crate) fn ends(&self) -> [Point; 2] {
-        [self.flat.from, self.flat.to]
-    }
-
-    /// Returns the centre and radius of an arc, and whether the material is inside the circle.
-    pub(crate) fn round(&self) -> Option<(Point, f64, bool)> {
-        self.flat.circle
-    }
-
-    /// Returns the polar angle of an arc's start about its centre, and the signed angle from there to its
-    /// end, in radians; zeros for a line.
-    pub(crate) fn angles(&self) -> [f64; 2] {
-        let Some((centre, _, convex)) = self.flat.circle else { return [0.0; 2] };
-        let [a, b] = self.ends().map(|end| minus(end, centre));
-        let turn = cross(a, b).atan2(dot(a, b));
-        let full = 2.0 * std::f64::consts::PI;
-        let turn = match convex {
-            true if turn < 0.0 => turn + full,
-            false if turn > 0.0 => turn - full,
-            _ => turn,
-        };
-        [a[1].atan2(a[0]), turn]
-    }
-
-    /// Returns the distance between its ends.
-    pub(crate) fn chord(&self) -> f64 {
-        norm(minus(self.flat.to, self.flat.from))
-    }
-
-    /// Returns the unit normal into the material at a point of the segment's line or circle.
-    pub(crate) fn inward(&self, p: Point) -> Point {
-        match self.flat.circle {
-            None => [-self.flat.direction[1], self.flat.direction[0]],
-            Some((centre, _, convex)) => {
-                unit(if convex { minus(centre, p) } else { minus(p, centre) })
-            }
-        }
-    }
-
-    /// Returns the unit direction of travel at its start or end.
-    pub(crate) fn tangent(&self, at_end: bool) -> Point {
-        let Some((centre, _, convex)) = self.flat.circle else { return self.flat.direction };
-        let out = unit(minus(self.ends()[usize::from(at_end)], centre));
-        if convex { [-out[1], out[0]] } else { [out[1], -out[0]] }
-    }
-
-    /// Returns the signed distance of a point from the segment's whole line or circle, positive on the
-    /// material's side.
-    pub(crate) fn signed(&self, p: Point) -> f64 {
-        match self.flat.circle {
-            None => cross(self.flat.direction, minus(p, self.flat.from)),
-            Some((centre, radius, convex)) => {
-                let out = norm(minus(p, centre));
-                if convex { radius - out } else { out - radius }
-            }
-        }
-    }
-
-    /// Returns the distance of a point from the segment.
-    pub(crate) fn distance_to(&self, p: Point) -> f64 {
-        let [before, after] = self.sector(p);
-        if before < 0.0 || after < 0.0 {
-            let (from, to) = (norm(minus(p, self.flat.from)), norm(minus(p, self.flat.to)));
-            return from.min(to);
-        }
-        self.signed(p).abs()
-    }
-
-    /// Returns the distances of a point past the normal at the start and ahead of the normal at the end. Both
-    /// are at least 0 where the nearest point of the segment is not one of its ends.
-    pub(crate) fn sector(&self, p: Point) -> [f64; 2] {
-        let [from, to] = self.ends();
-        match self.flat.circle {
-            None => {
-                [dot(self.flat.direction, minus(p, from)), dot(self.flat.direction, minus(to, p))]
-            }
-            Some((centre, radius, convex)) => {
-                let (a, b, q) = (minus(from, centre), minus(to, centre), minus(p, centre));
-                let sides = [cross(a, q) / radius, cross(q, b) / radius];
-                if convex { sides } else { sides.map(|side| -side) }
-            }
-        }
+        let in_doubles = circle.as_ref().map(|circle| touchoff_plane::Circle {
+            centre: doubles(&circle.centre),
+            radius: circle.radius.to_f64(),
+            convex: circle.convex,
+        });
+        let geometry = touchoff_plane::Segment::new([&from, &to].map(doubles), in_doubles, surface);
+        Segment { from, to, circle, span, geometry }
     }
 
     /// Returns the expression of [`Segment::signed`].
@@ -272,69 +166,26 @@ pub(crate) fn turn(incoming: Point, outgoing: Point) -> f64 {
     if sine.abs() < TANGENT_SINE && dot(incoming, outgoing) > 0.0 { 0.0 } else { sine }
 }
 
-/// Returns points along a segment, including its ends.
-pub(crate) fn sample_points(segment: &Segment) -> Vec<Point> {
-    let [from, to] = segment.ends();
-    let Some((centre, ..)) = segment.flat.circle else { return vec![from, to] };
-    let (a, angle) = (minus(from, centre), segment.angles()[1]);
-    const STEPS: usize = 32;
-    (0..=STEPS)
-        .map(|k| match k {
-            0 => from,
-            STEPS => to,
-            _ => {
-                let (sin, cos) = (angle * k as f64 / STEPS as f64).sin_cos();
-                [centre[0] + a[0] * cos - a[1] * sin, centre[1] + a[0] * sin + a[1] * cos]
-            }
-        })
-        .collect()
-}
-
 /// Returns points on a segment, each with the unit normal into the material.
 pub(crate) fn points_with_normals(segment: &Segment, count: usize) -> Vec<[Point; 2]> {
-    let [from, to] = segment.ends();
-    let [start, turn] = segment.angles();
-    (0..count)
-        .map(|k| {
-            let fraction = (k as f64 + 0.5) / count as f64;
-            let point = match segment.flat.circle {
-                None => [0, 1].map(|axis| from[axis] + fraction * (to[axis] - from[axis])),
-                Some((centre, radius, _)) => {
-                    let (sin, cos) = (start + fraction * turn).sin_cos();
-                    [centre[0] + radius * cos, centre[1] + radius * sin]
-                }
-            };
-            [point, segment.inward(point)]
-        })
-        .collect()
+    let fraction = |k: usize| (k as f64 + 0.5) / count as f64;
+    let places = (0..count).map(|k| segment.geometry.place(fraction(k)));
+    places.map(|place| [place.point, place.outward().map(|part| -part)]).collect()
 }
 
-/// Returns the bounding box of an outline from its ends and the extreme points of its arcs.
+/// Returns the bounding box of an outline.
 pub(crate) fn bounding_box(outline: &[Segment]) -> [Point; 2] {
-    let [mut low, mut high] = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-    let mut widen = |p: Point| {
-        for k in 0..2 {
-            low[k] = low[k].min(p[k]);
-            high[k] = high[k].max(p[k]);
-        }
-    };
-    for segment in outline {
-        segment.ends().into_iter().for_each(&mut widen);
-        if let Some((centre, radius, _)) = segment.flat.circle {
-            for direction in [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]] {
-                let p = [centre[0] + radius * direction[0], centre[1] + radius * direction[1]];
-                if segment.sector(p).iter().all(|side| *side >= 0.0) {
-                    widen(p);
-                }
-            }
-        }
-    }
-    [low, high]
+    let none = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+    let boxes = outline.iter().map(|segment| segment.geometry.bounding_box());
+    boxes.fold(none, |[low, high], [lowest, highest]| {
+        [[0, 1].map(|k| low[k].min(lowest[k])), [0, 1].map(|k| high[k].max(highest[k]))]
+    })
 }
 
 /// Returns the location of the segment that is nearest to a point.
 pub(crate) fn nearest_span(outline: &[Segment], p: Point) -> Option<Span> {
-    let nearest = outline.iter().min_by(|a, b| a.distance_to(p).total_cmp(&b.distance_to(p)));
+    let nearest =
+        outline.iter().min_by(|a, b| a.geometry.distance(p).total_cmp(&b.geometry.distance(p)));
     nearest.map(|segment| segment.span)
 }
 
@@ -347,13 +198,13 @@ fn rounded_up(d: f64) -> f64 {
 pub(crate) fn radius_between(outline: &[Segment], low: f64, high: f64) -> f64 {
     let mut widest = 0.0f64;
     for segment in outline {
-        for [d, z] in segment.ends() {
+        for [d, z] in segment.geometry.ends {
             if (low..=high).contains(&z) {
                 widest = widest.max(d);
             }
         }
-        let [[d0, z0], [d1, z1]] = segment.ends();
-        match segment.flat.circle {
+        let [[d0, z0], [d1, z1]] = segment.geometry.ends;
+        match segment.geometry.circle {
             None => {
                 for z in [low, high] {
                     if (z0.min(z1)..=z0.max(z1)).contains(&z) && z0 != z1 {
@@ -361,11 +212,15 @@ pub(crate) fn radius_between(outline: &[Segment], low: f64, high: f64) -> f64 {
                     }
                 }
             }
-            Some((centre, radius, _)) => {
+            Some(touchoff_plane::Circle { centre, radius, .. }) => {
                 let half_chord =
                     |z: f64| (radius * radius - (z - centre[1]).powi(2)).max(0.0).sqrt();
                 let mut include_point = |z: f64, d: f64| {
-                    if segment.sector([d, z]).iter().all(|side| *side >= -SECTOR_ROUNDING * radius)
+                    if segment
+                        .geometry
+                        .sector([d, z])
+                        .iter()
+                        .all(|side| *side >= -SECTOR_ROUNDING * radius)
                     {
                         widest = widest.max(rounded_up(d));
                     }

@@ -89,7 +89,7 @@ pub(super) fn inward_directions(outline: &[Segment]) -> Vec<[Point; 2]> {
         |(segment, inward_directions)| {
             let [[_, one], [_, other]] =
                 [inward_directions[0].last()?, inward_directions[1].first()?];
-            Some([segment.ends()[1], [one[0] + other[0], one[1] + other[1]]])
+            Some([segment.geometry.ends[1], [one[0] + other[0], one[1] + other[1]]])
         },
     );
     let corners: Vec<[Point; 2]> = corners.collect();

@@ -283,7 +283,7 @@ impl<'m> Cells<'m> {
         let [low, high] = outline::bounding_box(&self.profile.outline).map(|end| end[1]);
         let mut points = ring_points(low / 2.0 + high / 2.0, self.size);
         for segment in &self.profile.outline {
-            let [from, to] = segment.ends();
+            let [from, to] = segment.geometry.ends;
             let along = minus(to, from).map(|part| part / norm(minus(to, from)));
             for end in [from, to] {
                 points.extend(strip_points(end, along, self.size));

@@ -2,8 +2,12 @@
 
 use crate::diagnostic::{Diagnostic, ProfileKind, enough};
 use crate::geometry::outline::{
-    Point, Segment, TANGENT_SINE, bounding_box, cross, dot, doubles, minus, norm, sample_points,
+    Point, Segment, TANGENT_SINE, bounding_box, cross, dot, doubles, minus, norm,
 };
+use touchoff_plane::Circle;
+
+/// The number of chords of an arc where a profile is looked at through points.
+const ARC_STEPS: usize = 32;
 
 /// The part of the largest radius by which an arc may pass the axis, or stay away from it, and end on it.
 const AXIS_ROUNDING: f64 = 1e-12;
@@ -20,15 +24,20 @@ const IN_LINE_SINE: f64 = 1e-13;
 pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<Diagnostic> {
     let (Some(first), Some(last)) = (outline.first(), outline.last()) else { return Vec::new() };
     let mut diagnostics = Vec::new();
-    let points: Vec<Point> = outline.iter().flat_map(sample_points).collect();
+    let points = outline.iter().flat_map(|segment| {
+        let steps = if segment.circle.is_some() { ARC_STEPS } else { 1 };
+        segment.geometry.places(steps).map(|place| place.point)
+    });
+    let points: Vec<Point> = points.collect();
     let [_, high] = bounding_box(outline);
     for (index, segment) in outline.iter().enumerate() {
-        let [_, [to, _]] = segment.ends();
+        let [_, [to, _]] = segment.geometry.ends;
         // The point of an arc's circle nearest to the axis, if it lies strictly between the arc's ends.
-        let arc_near_axis = segment.round().filter(|(centre, radius, _)| {
-            segment.sector([centre[0] - radius, centre[1]]).iter().all(|side| *side > 0.0)
+        let arc_near_axis = segment.geometry.circle.filter(|Circle { centre, radius, .. }| {
+            segment.geometry.sector([centre[0] - radius, centre[1]]).iter().all(|side| *side > 0.0)
         });
-        let lowest = arc_near_axis.map_or(f64::INFINITY, |(centre, radius, _)| centre[0] - radius);
+        let lowest =
+            arc_near_axis.map_or(f64::INFINITY, |Circle { centre, radius, .. }| centre[0] - radius);
         // Only the last segment may end on the axis.
         let touches = lowest <= AXIS_ROUNDING * high[0]
             || (to <= AXIS_ROUNDING * high[0] && index + 1 < outline.len());
@@ -50,8 +59,8 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
         return diagnostics;
     }
     let axis_ends = [
-        (first, first.tangent(false), first.ends()[0]),
-        (last, last.tangent(true), last.ends()[1]),
+        (first, first.geometry.tangent(0), first.geometry.ends[0]),
+        (last, last.geometry.tangent(1), last.geometry.ends[1]),
     ];
     for (segment, tangent, point) in axis_ends {
         if tangent[0].abs() < TANGENT_SINE {
@@ -64,16 +73,16 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
     // Segments that already have a diagnostic. Their neighbours would only repeat it.
     let mut reported: Vec<usize> = Vec::new();
     for (index, pair) in outline.windows(2).enumerate() {
-        let (before, after) = (pair[0].tangent(true), pair[1].tangent(false));
+        let (before, after) = (pair[0].geometry.tangent(1), pair[1].geometry.tangent(0));
         if cross(before, after).abs() < TANGENT_SINE && dot(before, after) < 0.0 {
-            let location = show(pair[0].ends()[1]);
+            let location = show(pair[0].geometry.ends[1]);
             diagnostics.push(
                 Diagnostic::new(pair[1].span, ProfileKind::TurnsBack { location })
                     .with_label(pair[0].span, "previous segment"),
             );
             reported.extend([index, index + 1]);
         } else if hardly_turns(&pair[0], &pair[1]) {
-            let location = show(pair[0].ends()[1]);
+            let location = show(pair[0].geometry.ends[1]);
             diagnostics.push(
                 Diagnostic::new(
                     pair[1].span,
@@ -95,7 +104,7 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
                 let slack = COMMON_POINT_ROUNDING
                     * high.iter().fold(0.0, |size: f64, part| size.max(part.abs()));
                 let is_end = |segment: &Segment| {
-                    segment.ends().iter().any(|end| norm(minus(*end, point)) <= slack)
+                    segment.geometry.ends.iter().any(|end| norm(minus(*end, point)) <= slack)
                 };
                 diagnostics.push(
                     Diagnostic::new(
@@ -118,14 +127,14 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
 }
 
 fn lies_on_axis(segment: &Segment) -> bool {
-    let [[from, _], [to, _]] = segment.ends();
-    segment.round().is_none() && from == 0.0 && to == 0.0
+    let [[from, _], [to, _]] = segment.geometry.ends;
+    segment.geometry.circle.is_none() && from == 0.0 && to == 0.0
 }
 
 /// Returns whether a line follows another at an angle that is not 0 and yet small enough to count as tangent. Points
 /// between the normals of the two would be assigned to the wrong line.
 fn hardly_turns(before: &Segment, after: &Segment) -> bool {
-    if before.round().is_some() || after.round().is_some() {
+    if before.geometry.circle.is_some() || after.geometry.circle.is_some() {
         return false;
     }
     let (Some([ad, az]), Some([bd, bz])) = (before.direction(), after.direction()) else {
@@ -149,7 +158,8 @@ fn common_point(a: &Segment, b: &Segment, neighbours: bool) -> Option<Point> {
         .fold(0.0, f64::max);
     let slack = COMMON_POINT_ROUNDING * size;
     let is_on = |s: &Segment, p: Point| {
-        s.signed(p).abs() <= slack && s.sector(p).iter().all(|side| *side >= -slack)
+        s.geometry.signed_distance(p).abs() <= slack
+            && s.geometry.sector(p).iter().all(|side| *side >= -slack)
     };
     let ends = [doubles(&a.from), doubles(&a.to), doubles(&b.from), doubles(&b.to)];
     candidates.into_iter().chain(ends).find(|p| {
@@ -172,7 +182,7 @@ fn line_line(a: &Segment, b: &Segment) -> Vec<Point> {
 fn line_circle(line: &Segment, arc: &Segment) -> Vec<Point> {
     let Some(circle) = &arc.circle else { return Vec::new() };
     let (centre, radius) = (doubles(&circle.centre), circle.radius.to_f64());
-    let direction = line.tangent(false);
+    let direction = line.geometry.tangent(0);
     let from = minus(doubles(&line.from), centre);
     let foot = -dot(direction, from);
     let distance = cross(direction, from);

@@ -18,6 +18,7 @@ use crate::geometry::polygon::{
     Polygon, area, centre_and_half, centroid, clipped, divided, halved, hull, range,
 };
 use std::collections::VecDeque;
+use touchoff_plane::Circle;
 
 /// The least part of a polygon's breadth that a cut along a normal leaves on either side: thinner pieces prove little more.
 const MIN_CUT: f64 = 0.02;
@@ -100,7 +101,7 @@ impl Section<'_> {
                 let from = self.corner_at(previous);
                 let ends = self.adjacent_segments(previous).into_iter().flatten();
                 ends.map(|(piece, end)| {
-                    let along = self.outline[piece].tangent(end == 1);
+                    let along = self.outline[piece].geometry.tangent(end);
                     let toward = if end == 1 { along } else { [-along[0], -along[1]] };
                     HalfPlane { from, toward }
                 })
@@ -113,18 +114,21 @@ impl Section<'_> {
     fn normal_sides(&self, piece: usize) -> [HalfPlane; 2] {
         let segment = &self.outline[piece];
         // The normals of an arc meet in its centre.
-        let [from, to] = segment.round().map_or(segment.ends(), |(centre, ..)| [centre; 2]);
-        let start = HalfPlane { from, toward: segment.tangent(false) };
-        [start, HalfPlane { from: to, toward: segment.tangent(true) }.opposite()]
+        let [from, to] = segment
+            .geometry
+            .circle
+            .map_or(segment.geometry.ends, |Circle { centre, .. }| [centre; 2]);
+        let start = HalfPlane { from, toward: segment.geometry.tangent(0) };
+        [start, HalfPlane { from: to, toward: segment.geometry.tangent(1) }.opposite()]
     }
 
     /// Cuts off what is provably beyond a feature's own line or circle.
     fn on_own_side(&self, feature: usize, polygon: Polygon) -> Option<Polygon> {
         let Feature::Piece(piece) = self.features[feature] else { return Some(polygon) };
         let segment = &self.outline[piece];
-        match segment.round() {
-            None => clipped(&polygon, &|p| segment.signed(p)),
-            Some((centre, radius, true)) => {
+        match segment.geometry.circle {
+            None => clipped(&polygon, &|p| segment.geometry.signed_distance(p)),
+            Some(Circle { centre, radius, convex: true }) => {
                 // A tangent for each corner that is far outside.
                 let mut polygon = polygon;
                 while polygon.len() < MAX_VERTICES {
@@ -140,7 +144,7 @@ impl Section<'_> {
                 Some(polygon)
             }
             // The chord between the directions of the outermost vertices.
-            Some((centre, radius, false)) => {
+            Some(Circle { centre, radius, convex: false }) => {
                 let middle = minus(centroid(&polygon), centre);
                 let middle = middle.map(|part| part / norm(middle));
                 let cosine = polygon.iter().map(|p| {
@@ -162,10 +166,14 @@ impl Section<'_> {
             Feature::Corner(previous) => {
                 (Estimate::tangent(self.corner_at(previous), 0.0, 1.0, at), true)
             }
-            Feature::Piece(piece) => match self.outline[piece].round() {
+            Feature::Piece(piece) => match self.outline[piece].geometry.circle {
                 None => (Estimate::Signed(&self.outline[piece]), true),
-                Some((_, _, true)) => (Estimate::Signed(&self.outline[piece]), false),
-                Some((centre, radius, false)) => (Estimate::tangent(centre, radius, 1.0, at), true),
+                Some(Circle { convex: true, .. }) => {
+                    (Estimate::Signed(&self.outline[piece]), false)
+                }
+                Some(Circle { centre, radius, convex: false }) => {
+                    (Estimate::tangent(centre, radius, 1.0, at), true)
+                }
             },
         }
     }
@@ -175,10 +183,14 @@ impl Section<'_> {
     fn high(&self, feature: usize, at: Point) -> (Estimate<'_>, bool) {
         match self.features[feature] {
             Feature::Corner(previous) => (Estimate::Point(self.corner_at(previous)), false),
-            Feature::Piece(piece) => match self.outline[piece].round() {
+            Feature::Piece(piece) => match self.outline[piece].geometry.circle {
                 None => (Estimate::Signed(&self.outline[piece]), true),
-                Some((centre, radius, true)) => (Estimate::tangent(centre, radius, -1.0, at), true),
-                Some((_, _, false)) => (Estimate::Signed(&self.outline[piece]), false),
+                Some(Circle { centre, radius, convex: true }) => {
+                    (Estimate::tangent(centre, radius, -1.0, at), true)
+                }
+                Some(Circle { convex: false, .. }) => {
+                    (Estimate::Signed(&self.outline[piece]), false)
+                }
             },
         }
     }
@@ -193,7 +205,9 @@ impl Section<'_> {
         let slack = -self.tolerance();
         match self.features[feature] {
             Feature::Corner(_) => true,
-            Feature::Piece(piece) => points.iter().all(|p| self.outline[piece].signed(*p) >= slack),
+            Feature::Piece(piece) => {
+                points.iter().all(|p| self.outline[piece].geometry.signed_distance(*p) >= slack)
+            }
         }
     }
 
@@ -209,10 +223,12 @@ impl Section<'_> {
         anchors(polygon).any(|at| {
             let (low, _) = self.low(feature, at);
             let (high, _) = self.high(feature, at);
-            let behind = |p: &Point| match segment.round() {
-                None => -segment.signed(*p),
-                Some((centre, radius, true)) => norm(minus(*p, centre)) - radius,
-                Some((centre, radius, false)) => Estimate::tangent(centre, radius, -1.0, at).at(*p),
+            let behind = |p: &Point| match segment.geometry.circle {
+                None => -segment.geometry.signed_distance(*p),
+                Some(Circle { centre, radius, convex: true }) => norm(minus(*p, centre)) - radius,
+                Some(Circle { centre, radius, convex: false }) => {
+                    Estimate::tangent(centre, radius, -1.0, at).at(*p)
+                }
             };
             // Points behind the other are behind the feature as well if `behind + f · high ≤ 0` for a factor `f ≥ 0`. The sum is
             // convex, so that corners suffice. Two normals at a small angle meet in a corner that is well known only
@@ -280,13 +296,13 @@ impl Section<'_> {
                 |end: &Point| polygon.iter().all(|p| low.at(*p) - norm(minus(*p, *end)) >= slack);
             // The feature's own points are no nearer than it.
             let own_points = self.end_points(feature);
-            if segment.ends().iter().any(|end| !own_points.contains(end) && is_nearer(end)) {
+            if segment.geometry.ends.iter().any(|end| !own_points.contains(end) && is_nearer(end)) {
                 return None;
             }
             // Two points have a straight border.
             if let Feature::Corner(previous) = self.features[feature] {
                 let corner = self.corner_at(previous);
-                for end in segment.ends().into_iter().filter(|end| *end != corner) {
+                for end in segment.geometry.ends.into_iter().filter(|end| *end != corner) {
                     let from = [0, 1].map(|k| f64::midpoint(corner[k], end[k]));
                     let toward = minus(corner, end);
                     let side = HalfPlane { from, toward: toward.map(|part| part / norm(toward)) };
@@ -294,12 +310,15 @@ impl Section<'_> {
                 }
             }
             // Behind a line, the line itself is nearer.
-            if segment.round().is_none() {
-                let values: Vec<f64> = polygon.iter().map(|p| segment.signed(*p)).collect();
+            if segment.geometry.circle.is_none() {
+                let values: Vec<f64> =
+                    polygon.iter().map(|p| segment.geometry.signed_distance(*p)).collect();
                 if values.iter().any(|value| *value < -self.tolerance())
                     && let [Some(back), front] = divided(&polygon, &values)
                     && self.all_within(sides, &back)
-                    && back.iter().all(|p| low.at(*p) + segment.signed(*p) >= slack)
+                    && back
+                        .iter()
+                        .all(|p| low.at(*p) + segment.geometry.signed_distance(*p) >= slack)
                 {
                     polygon = front?;
                 }
@@ -370,7 +389,7 @@ impl Section<'_> {
     /// Returns the distance of a feature from a point.
     pub(crate) fn distance_of(&self, feature: usize, p: Point) -> f64 {
         match self.features[feature] {
-            Feature::Piece(piece) => self.outline[piece].distance_to(p),
+            Feature::Piece(piece) => self.outline[piece].geometry.distance(p),
             Feature::Corner(previous) => norm(minus(p, self.corner_at(previous))),
         }
     }
@@ -384,9 +403,9 @@ impl Section<'_> {
                 continue;
             }
             let distance = self.distance_of(index, p);
-            let own = feature
-                .piece()
-                .is_none_or(|piece| self.outline[piece].sector(p).iter().all(|side| *side >= 0.0));
+            let own = feature.piece().is_none_or(|piece| {
+                self.outline[piece].geometry.sector(p).iter().all(|side| *side >= 0.0)
+            });
             if distance < nearest.1 || (distance == nearest.1 && nearest.0.is_none()) {
                 nearest = (own.then_some(index), distance);
             }
@@ -402,7 +421,7 @@ impl Section<'_> {
         // The points that a feature owns are as far as its line or circle.
         let (own, true) = self.low(feature, middle) else { return Some(polygon.clone()) };
         // Beyond a corner of the outline, between the normals there, nothing else is near.
-        let ends = self.outline.iter().flat_map(Segment::ends);
+        let ends = self.outline.iter().flat_map(|segment| segment.geometry.ends);
         let from = |end: &Point| norm(minus(*end, middle));
         let end = ends.min_by(|one, other| from(one).total_cmp(&from(other)));
         let is_nearer = |end: Point| {
@@ -555,7 +574,7 @@ impl Section<'_> {
     fn end_points(&self, feature: usize) -> Vec<Point> {
         match self.features[feature] {
             Feature::Corner(previous) => vec![self.corner_at(previous)],
-            Feature::Piece(piece) => self.outline[piece].ends().to_vec(),
+            Feature::Piece(piece) => self.outline[piece].geometry.ends.to_vec(),
         }
     }
 
@@ -598,7 +617,7 @@ impl Estimate<'_> {
 
     fn at(&self, p: Point) -> f64 {
         match self {
-            Estimate::Signed(segment) => segment.signed(p),
+            Estimate::Signed(segment) => segment.geometry.signed_distance(p),
             Estimate::Point(point) => norm(minus(p, *point)),
             Estimate::Tangent { centre, radius, out, sign } => {
                 sign * (dot(*out, minus(p, *centre)) - radius)
@@ -683,7 +702,7 @@ mod tests {
                 if !section.is_inside(p) {
                     continue;
                 }
-                let distances = section.outline.iter().map(|segment| segment.distance_to(p));
+                let distances = section.outline.iter().map(|segment| segment.geometry.distance(p));
                 let nearest = distances.fold(f64::INFINITY, f64::min);
                 for (feature, cover) in covers.iter().enumerate() {
                     let is_within = |side: &super::HalfPlane| side.at(p) >= 0.0;

@@ -2,7 +2,7 @@
 
 use super::section::{Feature, Section};
 use crate::expr::{Coord, Graph, Id};
-use crate::geometry::outline::{self, Circle, ExactPoint};
+use crate::geometry::outline::{self, ExactCircle, ExactPoint};
 use crate::number::Number;
 
 /// A condition on the signs of expressions.
@@ -22,7 +22,7 @@ pub(crate) enum Test {
 const MAX_FLATNESS: f64 = 2.0;
 
 impl Section<'_> {
-    pub(super) fn is_flat(&self, circle: &Circle) -> bool {
+    pub(super) fn is_flat(&self, circle: &ExactCircle) -> bool {
         circle.radius.to_f64() > MAX_FLATNESS * self.size
     }
 

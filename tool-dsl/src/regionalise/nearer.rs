@@ -4,8 +4,9 @@ use super::curve::Test;
 use super::section::{Feature, Section};
 use crate::expr::polynomial::Polynomial;
 use crate::expr::{Coord, Graph, Id};
-use crate::geometry::outline::{self, Circle, ExactPoint, minus};
+use crate::geometry::outline::{self, ExactCircle, ExactPoint, minus};
 use crate::number::Number;
+use touchoff_plane::Circle;
 
 /// The sine below which two lines are compared by their distances: where they meet is too far away to be divided at.
 const NEARLY_PARALLEL_SINE: f64 = 1e-3;
@@ -17,7 +18,7 @@ const TOUCHING: f64 = 1e-13;
 enum Kind<'o> {
     Line(usize),
     Point(&'o ExactPoint),
-    Arc(&'o Circle),
+    Arc(&'o ExactCircle),
     /// An arc too flat to be compared by squares.
     Flat,
 }
@@ -91,28 +92,32 @@ impl Section<'_> {
         // A corner is a concave arc without a radius.
         let circle = |feature: usize| match self.kind(feature) {
             Kind::Line(_) | Kind::Flat => None,
-            Kind::Point(p) => Some((outline::doubles(p), 0.0, false)),
-            Kind::Arc(arc) => {
-                Some((outline::doubles(&arc.centre), arc.radius.to_f64(), arc.convex))
-            }
+            Kind::Point(p) => Some(Circle::concave(outline::doubles(p), 0.0)),
+            Kind::Arc(arc) => Some(Circle {
+                centre: outline::doubles(&arc.centre),
+                radius: arc.radius.to_f64(),
+                convex: arc.convex,
+            }),
         };
         let is_rounding = |difference: f64| difference.abs() <= TOUCHING * self.size;
         if self.joint(a, b).is_some() {
             return None;
         }
         match (circle(a), circle(b)) {
-            (Some((p, radius, convex)), Some((q, other_radius, other_convex))) => {
-                let between = outline::norm(minus(p, q));
+            (Some(one), Some(other)) => {
+                let between = outline::norm(minus(one.centre, other.centre));
+                let difference = one.radius - other.radius;
                 // A circle touches the other from inside, or two from outside.
-                let (touching, is_first) = match (convex, other_convex) {
-                    (true, true) => ((radius - other_radius).abs(), radius < other_radius),
-                    (false, false) => ((radius - other_radius).abs(), radius > other_radius),
-                    _ => (radius + other_radius, convex),
+                let (touching, is_first) = match (one.convex, other.convex) {
+                    (true, true) => (difference.abs(), difference < 0.0),
+                    (false, false) => (difference.abs(), difference > 0.0),
+                    _ => (one.radius + other.radius, one.convex),
                 };
                 let touch = is_rounding(between - touching) && !is_rounding(between);
                 touch.then_some(if is_first { a } else { b })
             }
-            (Some((centre, radius, convex)), None) | (None, Some((centre, radius, convex))) => {
+            (Some(Circle { centre, radius, convex }), None)
+            | (None, Some(Circle { centre, radius, convex })) => {
                 let (round, line) = if circle(a).is_some() { (a, b) } else { (b, a) };
                 if !matches!(self.kind(line), Kind::Line(_)) {
                     return None;
@@ -199,7 +204,7 @@ impl Section<'_> {
     fn compare_arc_and_line(
         &self,
         graph: &mut Graph,
-        arc: &Circle,
+        arc: &ExactCircle,
         line: usize,
         joint: Option<&ExactPoint>,
         nearer: bool,
@@ -231,7 +236,7 @@ impl Section<'_> {
 
     /// Returns whether an arc and a corner can be compared by squares accurately enough. The error of `L - 2 r √A` is a
     /// rounding error of `r²`; the error of the distances is that divided by their sum.
-    fn is_accurate_by_squares(&self, arc: &Circle, q: &ExactPoint) -> bool {
+    fn is_accurate_by_squares(&self, arc: &ExactCircle, q: &ExactPoint) -> bool {
         let radius = arc.radius.to_f64();
         let offset = minus(outline::doubles(q), outline::doubles(&arc.centre));
         let gap = (outline::norm(offset) - radius).abs();
@@ -240,7 +245,7 @@ impl Section<'_> {
 
     /// Returns the same for two arcs. If their convexity differs, the smaller radius is a lower bound of the sum of the
     /// distances.
-    fn are_accurate_by_squares(&self, a: &Circle, b: &Circle) -> bool {
+    fn are_accurate_by_squares(&self, a: &ExactCircle, b: &ExactCircle) -> bool {
         let [a_radius, b_radius] = [a, b].map(|arc| arc.radius.to_f64());
         let sum = a_radius + b_radius;
         a.convex == b.convex || sum * sum <= 0.25 * self.size * a_radius.min(b_radius)
@@ -251,7 +256,7 @@ impl Section<'_> {
 /// the condition is for the arc to be nearer, otherwise for the corner.
 fn compare_nearby_arc(
     graph: &mut Graph,
-    arc: &Circle,
+    arc: &ExactCircle,
     q: &ExactPoint,
     nearer: bool,
 ) -> Option<Test> {
@@ -266,7 +271,7 @@ fn compare_nearby_arc(
 /// Returns `A - (r ∓ l)²` of a convex or concave arc and a line along `t` that begins or ends at the arc's end `q`.
 fn difference_from_common_corner(
     graph: &mut Graph,
-    arc: &Circle,
+    arc: &ExactCircle,
     [td, tz]: [Number; 2],
     q: &ExactPoint,
 ) -> Id {
@@ -320,7 +325,7 @@ fn linear_difference(
 
 fn compare_arc_and_point(
     graph: &mut Graph,
-    arc: &Circle,
+    arc: &ExactCircle,
     q: &ExactPoint,
     nearer: bool,
 ) -> Option<Test> {
@@ -344,7 +349,7 @@ fn comparison_of_squares(
 }
 
 /// Returns the condition for one arc to be no farther than another.
-fn compare_arcs(graph: &mut Graph, this: &Circle, other: &Circle) -> Option<Test> {
+fn compare_arcs(graph: &mut Graph, this: &ExactCircle, other: &ExactCircle) -> Option<Test> {
     if this.convex != other.convex {
         let (first, second) = if this.convex { (this, other) } else { (other, this) };
         let sum = &first.radius + &second.radius;

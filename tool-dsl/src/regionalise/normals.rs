@@ -4,6 +4,7 @@ use super::section::{COINCIDENCE_FRACTION, Feature, Section};
 use crate::geometry::outline::{Point, dot, minus, norm};
 use crate::model::Model;
 use std::f64::consts::PI;
+use touchoff_plane::Circle;
 
 /// Distance from a smooth joint, relative to the segments' chords, within which rounding decides between its segments.
 const JOINT_FRACTION: f64 = 1e-5;
@@ -83,22 +84,8 @@ impl Section<'_> {
         match self.features[feature] {
             Feature::Piece(piece) => {
                 let segment = &self.outline[piece];
-                let [from, to] = segment.ends();
-                match segment.round() {
-                    None => {
-                        let along = segment.tangent(false);
-                        let foot =
-                            [from[0] + t * (to[0] - from[0]), from[1] + t * (to[1] - from[1])];
-                        FootPoint { foot, normal: [-along[1], along[0]] }
-                    }
-                    Some((centre, radius, convex)) => {
-                        let [start, sweep] = segment.angles();
-                        let (sin, cos) = (start + t * sweep).sin_cos();
-                        let foot = [centre[0] + radius * cos, centre[1] + radius * sin];
-                        let inward = if convex { -1.0 } else { 1.0 };
-                        FootPoint { foot, normal: [inward * cos, inward * sin] }
-                    }
-                }
+                let place = segment.geometry.place(t);
+                FootPoint { foot: place.point, normal: place.outward().map(|part| -part) }
             }
             Feature::Corner(previous) => {
                 let [from, sweep] = self.fans[feature];
@@ -119,15 +106,15 @@ impl Section<'_> {
         match self.features[feature] {
             Feature::Piece(piece) => {
                 let segment = &self.outline[piece];
-                let [from, to] = segment.ends();
-                match segment.round() {
+                let [from, to] = segment.geometry.ends;
+                match segment.geometry.circle {
                     None => {
                         let offset = minus(to, from);
                         dot(minus(p, from), offset) / dot(offset, offset)
                     }
-                    Some((centre, ..)) => {
-                        let [start, sweep] = segment.angles();
-                        wrapped_parameter(start, sweep, minus(p, centre))
+                    Some(Circle { centre, .. }) => {
+                        let [d, z] = minus(from, centre);
+                        wrapped_parameter(z.atan2(d), segment.geometry.turn(), minus(p, centre))
                     }
                 }
             }
@@ -143,9 +130,10 @@ impl Section<'_> {
         let FootPoint { foot, normal } = *foot_point;
         // The ball meets its mirror image when its centre reaches the axis.
         let to_axis = if normal[0] < 0.0 { -foot[0] / normal[0] } else { f64::INFINITY };
-        let circle = self.features[feature].piece().and_then(|piece| self.outline[piece].round());
+        let circle =
+            self.features[feature].piece().and_then(|piece| self.outline[piece].geometry.circle);
         let to_centre = match circle {
-            Some((_, radius, true)) => radius,
+            Some(Circle { radius, convex: true, .. }) => radius,
             _ => f64::INFINITY,
         };
         // The arc's own centre counts before another obstacle at the same distance.
@@ -179,15 +167,16 @@ impl Section<'_> {
             }
             Feature::Piece(piece) => {
                 let segment = &self.outline[piece];
-                match segment.round() {
+                match segment.geometry.circle {
                     None => {
-                        let along = segment.tangent(false);
+                        let along = segment.geometry.tangent(0);
                         // The centre of a ball of radius `r` at `p + r n` is `r` from the line too: `r = signed(p)
                         // + r n·m`, with `|n - m|² = 2 (1 - n·m)`.
                         let normal_difference = minus(n, [-along[1], along[0]]);
-                        2.0 * segment.signed(p) / dot(normal_difference, normal_difference)
+                        2.0 * segment.geometry.signed_distance(p)
+                            / dot(normal_difference, normal_difference)
                     }
-                    Some((centre, radius, convex)) => {
+                    Some(Circle { centre, radius, convex }) => {
                         let a = minus(p, centre);
                         // `|a + r n| = R - r` for a convex circle and `R + r` for a concave one, squared.
                         let (power, radial) = (radius * radius - dot(a, a), dot(a, n));
@@ -222,10 +211,10 @@ impl Section<'_> {
             Feature::Piece(piece) => {
                 let segment = &self.outline[piece];
                 let slack = COINCIDENCE_FRACTION * self.size;
-                let [start, end] = segment.sector(middle);
-                match segment.round() {
+                let [start, end] = segment.geometry.sector(middle);
+                match segment.geometry.circle {
                     None => start >= -slack && end >= -slack,
-                    Some((centre, radius, convex)) => {
+                    Some(Circle { centre, radius, convex }) => {
                         let slack = COINCIDENCE_FRACTION * norm(minus(middle, centre)).max(slack);
                         (!convex || ball_radius <= radius * (1.0 + COINCIDENCE_FRACTION))
                             && start >= -slack
@@ -248,10 +237,13 @@ impl Section<'_> {
         };
         let (low, high) = (&self.outline[a.min(b)], &self.outline[a.max(b)]);
         // Across a tangent joint, only a segment of smaller radius can stop a ball.
-        match (self.outline[a].round(), self.outline[b].round()) {
-            (Some((_, own, true)), Some((_, radius, true))) if radius < own => {
-                let joint = norm(minus(foot_point.foot, low.ends()[1]));
-                joint < JOINT_FRACTION * low.chord().min(high.chord())
+        match (self.outline[a].geometry.circle, self.outline[b].geometry.circle) {
+            (
+                Some(Circle { radius: own, convex: true, .. }),
+                Some(Circle { radius, convex: true, .. }),
+            ) if radius < own => {
+                let joint = norm(minus(foot_point.foot, low.geometry.ends[1]));
+                joint < JOINT_FRACTION * low.geometry.chord.min(high.geometry.chord)
             }
             _ => true,
         }
@@ -274,7 +266,8 @@ mod tests {
                     let foot_point = section.foot_point(feature, f64::from(k) / 20.0);
                     let (length, end) = section.grow_ball(feature, &foot_point);
                     for p in [0.1, 0.5, 1.0].map(|part| foot_point.at(part * length)) {
-                        let all = section.outline.iter().map(|segment| segment.distance_to(p));
+                        let all =
+                            section.outline.iter().map(|segment| segment.geometry.distance(p));
                         let nearest = all.fold(f64::INFINITY, f64::min);
                         assert_eq!(section.nearest(p).1, nearest, "{p:?}");
                     }

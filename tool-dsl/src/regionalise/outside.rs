@@ -7,6 +7,7 @@ use super::section::{Feature, Section};
 use crate::formula::{CurveIndex, Signs};
 use crate::geometry::outline::{Point, Segment, bounding_box, dot, minus, norm};
 use crate::geometry::polygon::{Polygon, clipped, divided};
+use touchoff_plane::Circle;
 
 /// The outer limit of the pieces, in sizes of the outline.
 const OUTER_DISTANCE_IN_SIZES: f64 = 64.0;
@@ -58,9 +59,14 @@ impl Section<'_> {
     /// Returns the heights between which every segment is monotonous, in order.
     fn heights(&self) -> Vec<f64> {
         let [[_, low], [_, high]] = bounding_box(self.outline);
-        let mut heights: Vec<f64> =
-            self.outline.iter().flat_map(Segment::ends).map(|end| end[1]).collect();
-        for (centre, radius, _) in self.outline.iter().filter_map(Segment::round) {
+        let mut heights: Vec<f64> = self
+            .outline
+            .iter()
+            .flat_map(|segment| segment.geometry.ends)
+            .map(|end| end[1])
+            .collect();
+        for segment in self.outline {
+            let Some(Circle { centre, radius, .. }) = segment.geometry.circle else { continue };
             let of_circle = [centre[1] - radius, centre[1], centre[1] + radius];
             heights.extend(of_circle.into_iter().filter(|z| *z > low && *z < high));
         }
@@ -79,16 +85,17 @@ impl Section<'_> {
 
 /// Returns the radii at which a segment passes a height that is none of its ends.
 fn radii_at(segment: &Segment, z: f64) -> Vec<f64> {
-    let [a, b] = segment.ends();
-    match segment.round() {
+    let [a, b] = segment.geometry.ends;
+    match segment.geometry.circle {
         None if (a[1] < z) != (b[1] < z) => {
             vec![a[0] + (b[0] - a[0]) * ((z - a[1]) / (b[1] - a[1]))]
         }
         None => Vec::new(),
-        Some((centre, radius, _)) => {
+        Some(Circle { centre, radius, .. }) => {
             let half = (radius * radius - (z - centre[1]).powi(2)).max(0.0).sqrt();
             let radii = [centre[0] - half, centre[0] + half].into_iter();
-            let is_on_arc = |d: &f64| segment.sector([*d, z]).iter().all(|side| *side >= 0.0);
+            let is_on_arc =
+                |d: &f64| segment.geometry.sector([*d, z]).iter().all(|side| *side >= 0.0);
             if half == 0.0 { Vec::new() } else { radii.filter(is_on_arc).collect() }
         }
     }
@@ -113,11 +120,12 @@ struct Crossing {
 impl Crossing {
     /// Returns the radius at a height of the slab.
     fn radius(&self, segment: &Segment, z: f64) -> f64 {
-        let round = segment.round();
+        let round = segment.geometry.circle;
         let is_on_half = |end: &Point| {
-            end[1] == z && round.is_none_or(|(centre, ..)| (end[0] - centre[0]) * self.half >= 0.0)
+            end[1] == z
+                && round.is_none_or(|Circle { centre, .. }| (end[0] - centre[0]) * self.half >= 0.0)
         };
-        let ends = segment.ends();
+        let ends = segment.geometry.ends;
         if let Some(end) = ends.into_iter().find(is_on_half) {
             return end[0];
         }
@@ -126,7 +134,7 @@ impl Crossing {
                 let [a, b] = ends;
                 a[0] + (b[0] - a[0]) * ((z - a[1]) / (b[1] - a[1]))
             }
-            Some((centre, radius, _)) => {
+            Some(Circle { centre, radius, .. }) => {
                 let square = radius * radius - (z - centre[1]).powi(2);
                 centre[0] + self.half * square.max(0.0).sqrt()
             }
@@ -141,7 +149,10 @@ impl Slab<'_> {
         let mut crossings = Vec::new();
         for (segment, geometry) in self.section.outline.iter().enumerate() {
             crossings.extend(radii_at(geometry, middle).into_iter().map(|at| {
-                let half = geometry.round().map_or(0.0, |(centre, ..)| (at - centre[0]).signum());
+                let half = geometry
+                    .geometry
+                    .circle
+                    .map_or(0.0, |Circle { centre, .. }| (at - centre[0]).signum());
                 Crossing { segment, at, half }
             }));
         }
@@ -162,15 +173,15 @@ impl Slab<'_> {
             whole.into_iter().map(|whole| (whole, Vec::new())).collect();
         for (border, outward) in borders.into_iter().zip([1.0, -1.0]) {
             let Some(border) = border else { continue };
-            match self.section.outline[border.segment].round() {
+            match self.section.outline[border.segment].geometry.circle {
                 None => {}
                 // Outside the circle, beyond the chord.
-                Some((_, _, true)) => {
+                Some(Circle { convex: true, .. }) => {
                     let known = self.outer_side(border);
                     parts.iter_mut().for_each(|(_, signs)| signs.extend(known));
                 }
                 // Inside the circle up to its centre, and beyond.
-                Some((centre, _, false)) => {
+                Some(Circle { centre, convex: false, .. }) => {
                     let known = self.outer_side(border);
                     let halves = parts.into_iter().flat_map(|(polygon, signs)| {
                         let before = polygon.iter().map(|p| outward * (centre[0] - p[0]));
@@ -190,7 +201,9 @@ impl Slab<'_> {
     fn chord(&self, border: &Crossing, outward: f64) -> [Point; 2] {
         let segment = &self.section.outline[border.segment];
         let chord = self.heights.map(|z| [border.radius(segment, z), z]);
-        let Some((centre, radius, false)) = segment.round() else { return chord };
+        let Some(Circle { centre, radius, convex: false }) = segment.geometry.circle else {
+            return chord;
+        };
         let middle = [0, 1].map(|k| chord[0][k] + chord[1][k] - 2.0 * centre[k]);
         let out = middle.map(|part| part / norm(middle));
         // The chord moves out by its distance from the arc.

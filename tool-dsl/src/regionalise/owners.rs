@@ -67,7 +67,7 @@ impl Section<'_> {
                     nearest = (Some(index), distance);
                 }
             } else if let Feature::Piece(piece) = *feature {
-                nearest_end = nearest_end.min(self.outline[piece].distance_to(p));
+                nearest_end = nearest_end.min(self.outline[piece].geometry.distance(p));
             }
         }
         // Points outside may be nearest to a convex corner. Otherwise rounding alone has a joint nearer than the features there.
@@ -76,7 +76,7 @@ impl Section<'_> {
             _ => self.ending_at(p, nearest_end)?,
         };
         let is_inside = match self.features[feature] {
-            Feature::Piece(piece) => self.outline[piece].signed(p) >= 0.0,
+            Feature::Piece(piece) => self.outline[piece].geometry.signed_distance(p) >= 0.0,
             // Behind a reflex corner, its segments are nearer.
             Feature::Corner(_) => true,
         };
@@ -95,7 +95,7 @@ impl Section<'_> {
         };
         let goes_on = |feature: &Feature| {
             feature.piece().is_some_and(|piece| {
-                self.outline[piece].distance_to(p) == distance
+                self.outline[piece].geometry.distance(p) == distance
                     && !self.is_at_convex_corner(piece, p)
             })
         };
@@ -105,7 +105,7 @@ impl Section<'_> {
 
     /// Returns whether the end of a segment that is nearer to a point is a convex corner.
     fn is_at_convex_corner(&self, piece: usize, p: Point) -> bool {
-        let [from, to] = self.outline[piece].ends().map(|end| norm(minus(p, end)));
+        let [from, to] = self.outline[piece].geometry.ends.map(|end| norm(minus(p, end)));
         let [incoming, outgoing] =
             self.directions_at(if to < from { Some(piece) } else { piece.checked_sub(1) });
         turn(incoming, outgoing) > 0.0

@@ -10,6 +10,7 @@ use crate::formula::Formula;
 use crate::geometry::function::CurveFunction;
 use crate::geometry::outline::{Point, Segment, cross, minus};
 use crate::geometry::polygon::{Polygon, contains, hull};
+use touchoff_plane::Circle;
 
 /// The outline with rounded corners, and its partition.
 #[derive(Clone, Debug)]
@@ -37,7 +38,7 @@ impl Rounded {
     ) -> Rounded {
         let tips = rounded.iter().enumerate().filter_map(|(segment, (arc, origin))| {
             let Origin::Fan(behind) = *origin else { return None };
-            let is_convex = arc.round().is_some_and(|(_, _, convex)| convex);
+            let is_convex = arc.geometry.circle.is_some_and(|Circle { convex, .. }| convex);
             is_convex.then(|| Tip { segment, polygon: tip(outline, behind, arc) })
         });
         let tips = tips.collect();
@@ -98,7 +99,7 @@ impl<'r> RoundedSection<'r> {
     pub(crate) fn nearest(&self, p: Point) -> (Option<usize>, f64) {
         let (outline, tolerance) = (self.section.outline, self.section.tolerance());
         for Tip { segment, polygon } in &self.rounded.tips {
-            let beyond = -outline[*segment].signed(p);
+            let beyond = -outline[*segment].geometry.signed_distance(p);
             if beyond > tolerance && contains(polygon, p) {
                 return (Some(*segment), beyond);
             }
@@ -109,8 +110,8 @@ impl<'r> RoundedSection<'r> {
                 continue;
             }
             let segment = &outline[index];
-            let is_within = segment.sector(p).iter().all(|side| *side >= -tolerance);
-            let distance = segment.signed(p);
+            let is_within = segment.geometry.sector(p).iter().all(|side| *side >= -tolerance);
+            let distance = segment.geometry.signed_distance(p);
             if !is_within || distance < -tolerance {
                 continue;
             }
@@ -138,10 +139,10 @@ impl<'r> RoundedSection<'r> {
 /// Returns a convex polygon about the points between the arc that rounds a convex corner and the corner, which is behind a segment
 /// of the outline or, for `None`, before the first one.
 fn tip(outline: &[Segment], behind: Option<usize>, arc: &Segment) -> Polygon {
-    let [from, to] = arc.ends();
+    let [from, to] = arc.geometry.ends;
     let corner = match behind {
-        Some(piece) => outline[piece].ends()[1],
-        None => outline[0].ends()[0],
+        Some(piece) => outline[piece].geometry.ends[1],
+        None => outline[0].geometry.ends[0],
     };
     let mut points = vec![from, corner, to];
     // An arc lies between its chord and its tangents, which meet in a point.
@@ -150,11 +151,12 @@ fn tip(outline: &[Segment], behind: Option<usize>, arc: &Segment) -> Polygon {
     let after = (after < outline.len()).then_some((after, false, to));
     for (piece, at_end, contact) in [before, after].into_iter().flatten() {
         let segment = &outline[piece];
-        if segment.round().is_none() {
+        if segment.geometry.circle.is_none() {
             continue;
         }
-        let inward = segment.inward(contact);
-        let (at_contact, at_corner) = ([-inward[1], inward[0]], segment.tangent(at_end));
+        let inward = segment.geometry.inward(contact);
+        let (at_contact, at_corner) =
+            ([-inward[1], inward[0]], segment.geometry.tangent(usize::from(at_end)));
         let sine = cross(at_contact, at_corner);
         if sine != 0.0 {
             let t = cross(minus(corner, contact), at_corner) / sine;

@@ -51,7 +51,7 @@ impl<'o> Section<'o> {
     pub(super) fn new(outline: &'o [Segment]) -> Section<'o> {
         let [low, high] = bounding_box(outline);
         let size = norm(minus(high, low));
-        let radii = outline.iter().filter_map(|segment| Some(segment.round()?.1));
+        let radii = outline.iter().filter_map(|segment| Some(segment.geometry.circle?.radius));
         let largest =
             [low, high].as_flattened().iter().map(|x| x.abs()).chain(radii).fold(0.0, f64::max);
         let (features, fans, boxes, sides) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
@@ -108,9 +108,9 @@ impl<'o> Section<'o> {
     /// Returns the directions of the outline before and after the end of a segment; for `None`, before and after the first one.
     /// At the axis the outline meets its own mirror image.
     pub(super) fn directions_at(&self, previous: Option<usize>) -> [Point; 2] {
-        let before = previous.map(|piece| self.outline[piece].tangent(true));
+        let before = previous.map(|piece| self.outline[piece].geometry.tangent(1));
         let after = self.outline.get(previous.map_or(0, |piece| piece + 1));
-        let after = after.map(|segment| segment.tangent(false));
+        let after = after.map(|segment| segment.geometry.tangent(0));
         let at_axis = before.or(after).map_or([0.0; 2], mirrored_direction);
         [before.unwrap_or(at_axis), after.unwrap_or(at_axis)]
     }
@@ -148,8 +148,8 @@ impl<'o> Section<'o> {
     /// Returns the position of a corner.
     pub(super) fn corner_at(&self, previous: Option<usize>) -> Point {
         match previous {
-            Some(piece) => self.outline[piece].ends()[1],
-            None => self.outline[0].ends()[0],
+            Some(piece) => self.outline[piece].geometry.ends[1],
+            None => self.outline[0].geometry.ends[0],
         }
     }
 
@@ -169,7 +169,7 @@ impl<'o> Section<'o> {
         let (Some(before), Some(after)) = (piece.checked_sub(1), self.outline.get(piece)) else {
             return false;
         };
-        turn(self.outline[before].tangent(true), after.tangent(false)) == 0.0
+        turn(self.outline[before].geometry.tangent(1), after.geometry.tangent(0)) == 0.0
     }
 
     /// Returns the segment at a joint of two features without an angle between them, with the end that is there (0 for
@@ -192,13 +192,13 @@ impl<'o> Section<'o> {
     /// Returns the direction of a feature that is a straight segment.
     pub(super) fn line_direction(&self, feature: usize) -> Option<Point> {
         let segment = &self.outline[self.features[feature].piece()?];
-        segment.circle.is_none().then(|| segment.tangent(false))
+        segment.circle.is_none().then(|| segment.geometry.tangent(0))
     }
 
     /// Returns a point's signed distance from a feature's whole line or circle, or its distance from a corner.
     pub(crate) fn depth_at(&self, feature: usize, p: Point) -> f64 {
         match self.features[feature] {
-            Feature::Piece(piece) => self.outline[piece].signed(p),
+            Feature::Piece(piece) => self.outline[piece].geometry.signed_distance(p),
             Feature::Corner(previous) => norm(minus(p, self.corner_at(previous))),
         }
     }

@@ -8,10 +8,11 @@
 
 use crate::diagnostic::format_number;
 use crate::geometry::outline::{
-    Circle, ExactPoint, Segment, cross, dot, doubles, minus, mirrored_direction, turn,
+    ExactCircle, ExactPoint, Segment, cross, dot, doubles, minus, mirrored_direction, turn,
 };
 use crate::number::Number;
 use std::f64::consts::PI;
+use touchoff_plane::Circle;
 
 /// The relative accuracy with which the longest length of `smooth` is found: finer than what is shown of it.
 const LENGTH_ACCURACY: f64 = 1e-9;
@@ -74,7 +75,7 @@ pub(crate) fn rounded(
             let to = after.as_ref().map_or(&segment.to, |corner| &corner.from);
             let ends = [from.clone(), to.clone()];
             let shortened =
-                Segment::new(ends, segment.circle.clone(), segment.surface, segment.span);
+                Segment::new(ends, segment.circle.clone(), segment.geometry.surface, segment.span);
             pieces.push((shortened, Origin::Piece(k)));
         }
         if let Some(corner) = after {
@@ -103,9 +104,9 @@ pub(crate) fn largest_fitting_length(outline: &[Segment], length: &Number) -> Op
 
 /// Returns the length along a segment.
 fn size(segment: &Segment) -> f64 {
-    match segment.round() {
-        None => segment.chord(),
-        Some((_, radius, _)) => radius * segment.angles()[1].abs(),
+    match segment.geometry.circle {
+        None => segment.geometry.chord,
+        Some(Circle { radius, .. }) => radius * segment.geometry.turn().abs(),
     }
 }
 
@@ -113,7 +114,7 @@ fn size(segment: &Segment) -> f64 {
 struct Corner {
     from: ExactPoint,
     to: ExactPoint,
-    circle: Circle,
+    circle: ExactCircle,
     /// The lengths that it takes from the segments before and after the corner.
     taken: [f64; 2],
 }
@@ -121,7 +122,7 @@ struct Corner {
 impl Corner {
     fn arc(&self, beside: &Segment) -> Segment {
         let ends = [self.from.clone(), self.to.clone()];
-        Segment::new(ends, Some(self.circle.clone()), beside.surface, beside.span)
+        Segment::new(ends, Some(self.circle.clone()), beside.geometry.surface, beside.span)
     }
 }
 
@@ -129,8 +130,8 @@ fn corner(outline: &[Segment], k: usize, length: &Number) -> Result<Option<Corne
     let behind = k.checked_sub(1);
     let (before, after) = (behind.map(|k| &outline[k]), outline.get(k));
     // At the axis the outline meets its mirror image.
-    let incoming = before.map(|s| s.tangent(true));
-    let outgoing = after.map(|s| s.tangent(false));
+    let incoming = before.map(|s| s.geometry.tangent(1));
+    let outgoing = after.map(|s| s.geometry.tangent(0));
     let (Some(a), Some(b)) = (
         incoming.or(outgoing.map(mirrored_direction)),
         outgoing.or(incoming.map(mirrored_direction)),
@@ -201,7 +202,7 @@ impl Arm<'_> {
     }
 
     /// Returns whether a circle has the same convexity as the corner's arc.
-    fn is_alike(&self, circle: &Circle) -> bool {
+    fn is_alike(&self, circle: &ExactCircle) -> bool {
         circle.convex == self.convex
     }
 
@@ -228,9 +229,9 @@ impl Arm<'_> {
     /// side.
     fn distance(&self, point: &ExactPoint) -> Option<f64> {
         let direction = doubles(&offset(point, self.corner()));
-        Some(match self.segment.round() {
+        Some(match self.segment.geometry.circle {
             None => dot(direction, doubles(&self.direction_from_corner()?)),
-            Some((centre, radius, convex)) => {
+            Some(Circle { centre, radius, convex }) => {
                 let [from, to] =
                     [self.corner(), point].map(|end_point| minus(doubles(end_point), centre));
                 let turn = cross(from, to).atan2(dot(from, to)) * radius;
@@ -298,7 +299,7 @@ impl Arm<'_> {
         let is_upper = self.at_end == self.convex;
         let pole = if is_upper { &centre[1] + &radius } else { &centre[1] - &radius };
         let from = [Number::int(0), pole];
-        let circle = Circle { centre, radius, convex: self.convex };
+        let circle = ExactCircle { centre, radius, convex: self.convex };
         Some(Corner { from, to, circle, taken: [0.0, length.to_f64()] })
     }
 }
@@ -314,7 +315,7 @@ fn fan(first: &Arm<'_>, second: &Arm<'_>, length: &Number) -> Option<Corner> {
     let centre = point_along(&from, &normal, &radius);
     let to = second.contact_point(&centre, &radius)?;
     let (max_length, other) = (length.to_f64(), second.distance(&to)?);
-    let circle = Circle { centre, radius, convex: first.convex };
+    let circle = ExactCircle { centre, radius, convex: first.convex };
     let is_near = other > 0.0 && other <= max_length * (1.0 + ROUNDING);
     is_near.then_some(Corner { from, to, circle, taken: [max_length, other] })
 }

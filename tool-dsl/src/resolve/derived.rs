@@ -187,9 +187,10 @@ fn names(
         .iter()
         .map(|feature| match *feature {
             Feature::Piece(piece) => {
-                let Segment { surface, span, .. } = outline[piece];
+                let segment = &outline[piece];
+                let (surface, span) = (segment.geometry.surface, segment.span);
                 let count = |segments: &[Segment]| {
-                    segments.iter().filter(|other| other.surface == surface).count()
+                    segments.iter().filter(|other| other.geometry.surface == surface).count()
                 };
                 let word = &surfaces[surface].name;
                 let name = match count(outline) {
@@ -201,7 +202,7 @@ fn names(
             Feature::Corner(behind) => {
                 let first = behind.unwrap_or(0);
                 let second = behind.map_or(0, |piece| (piece + 1).min(outline.len() - 1));
-                let [a, b] = [first, second].map(|piece| outline[piece].surface);
+                let [a, b] = [first, second].map(|piece| outline[piece].geometry.surface);
                 let owner = if surfaces[a].cutting && !surfaces[b].cutting { b } else { a };
                 let pair = format!("{}/{}", surfaces[a].name, surfaces[b].name);
                 let count: &mut usize = fans.entry(pair.clone()).or_default();
@@ -349,8 +350,8 @@ fn fans<'t>(
     }
     let formatted = |behind: Option<usize>, lowering: &Lowering| {
         let [d, z] = match behind {
-            Some(piece) => outline[piece].ends()[1],
-            None => outline[0].ends()[0],
+            Some(piece) => outline[piece].geometry.ends[1],
+            None => outline[0].geometry.ends[0],
         };
         Domain::HalfPlane.format_point([d, 0.0, lowering.frame.to_file(z)])
     };

@@ -10,7 +10,7 @@ use crate::diagnostic::{
 };
 use crate::domain::Domain;
 use crate::expr::Graph;
-use crate::geometry::outline::{Circle, ExactPoint, Segment, bounding_box, doubles};
+use crate::geometry::outline::{ExactCircle, ExactPoint, Segment, bounding_box, doubles};
 use crate::model::{Frame, Surface, Unit};
 use crate::number::Number;
 use crate::regionalise::check::check;
@@ -442,13 +442,14 @@ impl MountedPart {
         let mut new_indices = vec![None; self.surfaces.len()];
         let mut count = 0;
         for (surface, index) in new_indices.iter_mut().enumerate() {
-            if self.outline.iter().any(|segment| segment.surface == surface) {
+            if self.outline.iter().any(|segment| segment.geometry.surface == surface) {
                 *index = Some(count);
                 count += 1;
             }
         }
         for segment in &mut self.outline {
-            segment.surface = new_indices[segment.surface].unwrap_or_default();
+            let surface = &mut segment.geometry.surface;
+            *surface = new_indices[*surface].unwrap_or_default();
         }
         let mut is_kept = new_indices.iter().map(Option::is_some);
         self.surfaces.retain(|_| is_kept.next().unwrap_or_default());
@@ -497,13 +498,13 @@ fn transformed_outline(
 ) -> Vec<Segment> {
     let transformed = |[d, z]: &ExactPoint| [d * scale, &(z * scale) + by];
     let segments = outline.iter().map(|segment| {
-        let circle = segment.circle.as_ref().map(|circle| Circle {
+        let circle = segment.circle.as_ref().map(|circle| ExactCircle {
             centre: transformed(&circle.centre),
             radius: &circle.radius * scale,
             convex: circle.convex,
         });
         let ends = [transformed(&segment.from), transformed(&segment.to)];
-        Segment::new(ends, circle, segment.surface + first, segment.span)
+        Segment::new(ends, circle, segment.geometry.surface + first, segment.span)
     });
     segments.collect()
 }
@@ -518,7 +519,7 @@ fn join(lower: &[Segment], upper: &[Segment], plane: &Number) -> Result<Vec<Segm
     let slack = ROUNDING * size(lower).max(size(upper));
     let mut joined = below(lower, plane, slack)?;
     let Some(last) = joined.last() else { return Err(JoinError::Short) };
-    let (radius, ring) = (last.to[0].clone(), (last.surface, last.span));
+    let (radius, ring) = (last.to[0].clone(), (last.geometry.surface, last.span));
     if radius.to_f64() <= slack {
         return Err(JoinError::Point);
     }
@@ -526,7 +527,7 @@ fn join(lower: &[Segment], upper: &[Segment], plane: &Number) -> Result<Vec<Segm
     let faces = upper
         .iter()
         .take_while(|segment| {
-            let [[inner, a], [outer, b]] = segment.ends();
+            let [[inner, a], [outer, b]] = segment.geometry.ends;
             let level = [a, b].into_iter().all(|z| (z - height).abs() <= off_tip);
             segment.circle.is_none() && level && inner < outer
         })
@@ -545,11 +546,11 @@ fn join(lower: &[Segment], upper: &[Segment], plane: &Number) -> Result<Vec<Segm
     }
     for segment in face.iter().filter(|segment| segment.to[0].to_f64() > inner + slack) {
         let to = on_plane(&segment.to[0]);
-        joined.push(Segment::new([at, to.clone()], None, segment.surface, segment.span));
+        joined.push(Segment::new([at, to.clone()], None, segment.geometry.surface, segment.span));
         at = to;
     }
     let ends = [at, wall.to.clone()];
-    joined.push(Segment::new(ends, wall.circle.clone(), wall.surface, wall.span));
+    joined.push(Segment::new(ends, wall.circle.clone(), wall.geometry.surface, wall.span));
     joined.extend(rest.iter().cloned());
     Ok(joined)
 }
@@ -563,14 +564,14 @@ fn highest_above(
     let slack = ROUNDING * size(outline);
     outline
         .iter()
-        .filter(|segment| counts(segment.surface))
-        .map(|segment| (segment.surface, segment.ends()[1][1]))
+        .filter(|segment| counts(segment.geometry.surface))
+        .map(|segment| (segment.geometry.surface, segment.geometry.ends[1][1]))
         .filter(|(_, end)| *end > plane.to_f64() + slack)
         .max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 fn size(outline: &[Segment]) -> f64 {
-    let ends = outline.iter().flat_map(|segment| segment.ends());
+    let ends = outline.iter().flat_map(|segment| segment.geometry.ends);
     ends.flatten().fold(0.0, |size, part| size.max(part.abs()))
 }
 
@@ -604,7 +605,12 @@ fn below(outline: &[Segment], plane: &Number, slack: f64) -> Result<Vec<Segment>
                 let d = if at_end { segment.to[0].clone() } else { crossing(segment, plane) };
                 let ends = [segment.from.clone(), [d, plane.clone()]];
                 let circle = segment.circle.clone();
-                lower_outline.push(Segment::new(ends, circle, segment.surface, segment.span));
+                lower_outline.push(Segment::new(
+                    ends,
+                    circle,
+                    segment.geometry.surface,
+                    segment.span,
+                ));
                 reached = true;
             }
         }
@@ -614,13 +620,13 @@ fn below(outline: &[Segment], plane: &Number, slack: f64) -> Result<Vec<Segment>
 
 /// Returns the z of a segment's ends and, between them, the z at which an arc reverses along the axis.
 fn turning_heights(segment: &Segment) -> Vec<f64> {
-    let [from, to] = segment.ends().map(|end| end[1]);
+    let [from, to] = segment.geometry.ends.map(|end| end[1]);
     let turns = segment.circle.as_ref().and_then(|circle| {
         let ([_, centre], radius) = (doubles(&circle.centre), circle.radius.to_f64());
         [centre - radius, centre + radius].into_iter().find(|z| {
             let strictly = [from, to].iter().all(|end| (end - z).abs() > ROUNDING * radius);
             let point = [doubles(&circle.centre)[0], *z];
-            strictly && segment.sector(point).iter().all(|side| *side > 0.0)
+            strictly && segment.geometry.sector(point).iter().all(|side| *side > 0.0)
         })
     });
     [Some(from), turns, Some(to)].into_iter().flatten().collect()

@@ -5,7 +5,9 @@ use super::mount::off_tip;
 use crate::diagnostic::{
     Diagnostic, FormattedNumber, ProfileKind, Reported, Role, enough, format_number, without_error,
 };
-use crate::geometry::outline::{Circle, ExactPoint, Segment, bounding_box, doubles, minus, norm};
+use crate::geometry::outline::{
+    ExactCircle, ExactPoint, Segment, bounding_box, doubles, minus, norm,
+};
 use crate::model::Surface;
 use crate::number::Number;
 use crate::regionalise::check::check;
@@ -97,10 +99,11 @@ pub(super) fn outline(
         .into_iter()
         .map(|segment| {
             let [from, to] = [to_tool(&segment.from), to_tool(&segment.to)];
-            let circle =
-                segment.circle.map(|circle| Circle { centre: to_tool(&circle.centre), ..circle });
+            let circle = segment
+                .circle
+                .map(|circle| ExactCircle { centre: to_tool(&circle.centre), ..circle });
             let ends = if frame.spindle_down { [to, from] } else { [from, to] };
-            Segment::new(ends, circle, segment.surface, segment.span)
+            Segment::new(ends, circle, segment.geometry.surface, segment.span)
         })
         .collect();
     if frame.spindle_down {
@@ -123,7 +126,7 @@ fn shown([d, z]: [f64; 2]) -> String {
 /// Reports a profile that does not begin or does not end on the axis.
 fn off_axis(profile: &Profile, segments: &[Segment], diagnostics: &mut Vec<Diagnostic>) {
     let (Some(first), Some(last)) = (segments.first(), segments.last()) else { return };
-    let [start, end] = [first.ends()[0], last.ends()[1]];
+    let [start, end] = [first.geometry.ends[0], last.geometry.ends[1]];
     if start[0] != 0.0 {
         diagnostics.push(Diagnostic::new(
             profile.start.span,
@@ -181,7 +184,7 @@ fn circle(
     ends: [&ExactPoint; 2],
     span: Span,
     lowering: &mut Lowering,
-) -> Result<Circle, Diagnostic> {
+) -> Result<ExactCircle, Diagnostic> {
     let (centre, radius) = match &arc.circle {
         ArcCircle::Center(tuple) => {
             let centre = exact_point(tuple, lowering)?;
@@ -222,7 +225,7 @@ fn circle(
             span,
             ProfileKind::UnmarkedConcave { centre: shown(doubles(&centre)) },
         )),
-        _ => Ok(Circle { centre, radius, convex }),
+        _ => Ok(ExactCircle { centre, radius, convex }),
     }
 }
 

@@ -66,7 +66,9 @@ use lattice::{BitSet, Lattice, QuarterTurn, nodes_inside};
 use nalgebra::{Point3, Vector3};
 use std::fmt;
 use touchoff::mesh::{LARGEST_COORDINATE, Mesh};
-use touchoff::tool::{DepthBounds, Evaluations, Outputs, PointBatch, ProfileSegment, Tool};
+use touchoff::tool::{
+    DepthBounds, Evaluations, Outputs, PointBatch, ProfileSegment, Segment, Tool,
+};
 use touchoff::{Cloud, InsidePoint, InsideQuery, Interval, Level, PointBvh, TriangleId, Unit};
 
 /// The greatest number of points of a stock. A point takes some 34 bytes, and 110 while the stock is built: at
@@ -380,17 +382,18 @@ impl Stock {
         let info = tool.info();
         let unit = info.unit.factor_to(self.unit);
         let radius = radius / unit;
-        let length: f64 = info.outline.iter().map(ProfileSegment::length).sum();
+        let outline: Vec<Segment> = info.outline.iter().map(ProfileSegment::geometry).collect();
+        let length: f64 = outline.iter().map(Segment::length).sum();
         let step = (0.25 * radius).max(length / MAX_PLACES);
         let mut places = Vec::new();
         let mut points = PointBatch::default();
-        for segment in info.outline.iter() {
+        for segment in &outline {
             let count = (segment.length() / step).ceil().max(1.0);
             for index in 0..count as usize {
-                let (place, [dr, dz]) = segment.place((index as f64 + 0.5) / count);
-                places.push((place[0], segment.length() / count));
-                // Counter-clockwise, the material is to the left.
-                points.push([place[0] - dz * radius, 0.0, place[1] + dr * radius]);
+                let place = segment.place((index as f64 + 0.5) / count);
+                let ([d, z], [out, up]) = (place.point, place.outward());
+                places.push((d, segment.length() / count));
+                points.push([d - out * radius, 0.0, z - up * radius]);
             }
         }
         let outputs = Outputs { depth: true, ..Outputs::INSIDE };

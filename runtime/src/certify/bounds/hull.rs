@@ -12,8 +12,8 @@ use crate::certify::bounds::ring::{
 };
 use crate::certify::bounds::support::Support;
 use crate::certify::part::NodeRing;
+use crate::certify::space::MeridianPoint;
 use crate::certify::tool_model::chains::Chain;
-use crate::certify::tool_model::feature::{Feature, MeridianPoint};
 use crate::certify::tool_model::owners::Owners;
 use crate::certify::tool_model::profile::ProfileModel;
 use crate::certify::tool_model::rectangle::Rectangle;
@@ -21,6 +21,7 @@ use crate::certify::tool_model::section::Section;
 use crate::interval::Interval;
 use crate::tool::ToolInfo;
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, f32x16};
+use touchoff_plane::Segment;
 
 #[cfg(test)]
 mod tests;
@@ -173,14 +174,14 @@ fn plane<R: Real>(n: MeridianPoint, [d, z]: MeridianPoint) -> [R; 3] {
 }
 
 /// Returns the plane of which a feature's line is the meridian.
-fn under<R: Real>(line: &Feature) -> [R; 3] {
+fn under<R: Real>(line: &Segment) -> [R; 3] {
     plane([line.along[1], -line.along[0]], line.ends[0])
 }
 
 impl<R: Real> GuardedPlane<R> {
     /// Creates the plane of a line of the profile, for points whose feet are in a range along the line, where it is on the
     /// surface or outside the tool.
-    fn new(line: &Feature, [from, to]: [f64; 2]) -> GuardedPlane<R> {
+    fn new(line: &Segment, [from, to]: [f64; 2]) -> GuardedPlane<R> {
         let [u, v] = line.along;
         let ends = [([u, v], from), ([-u, -v], to)];
         let finite = ends.into_iter().filter(|(_, at)| at.is_finite());
@@ -250,7 +251,7 @@ impl<R: Real> HullSlab<R> {
         let [[d0, z0], [d1, z1]] = side.ends;
         let slope = (d1 - d0) / (z1 - z0);
         let convex = side.circle.is_some_and(|circle| circle.convex);
-        let line = side.tangent();
+        let line = side.tangent_line();
         let is_bound = line.as_ref().is_some_and(|line| section.tangent_bounds_slab(line, index));
         if let Some(line) = &line {
             if is_bound {

@@ -2,10 +2,10 @@
 
 use crate::bvh::LaneVector;
 use crate::certify::bounds::lanes::{Real, cross, dot, min3, minus};
-use crate::certify::tool_model::feature::MeridianPoint;
+use crate::certify::space::MeridianPoint;
 use crate::certify::tool_model::section::Section;
-use crate::tool::Circle;
 use fearless_simd::{Select, Simd, SimdFloat};
+use touchoff_plane::Circle;
 
 /// The support function of a tool.
 ///
@@ -52,7 +52,7 @@ impl<R: Real> Support<R> {
             centre: circle.centre.map(R::of),
             radius: R::of(circle.radius),
             normals: [0, 1].map(|end| {
-                let [d, z] = feature.tangent_at(end);
+                let [d, z] = feature.tangent(end);
                 [z, -d].map(R::of)
             }),
         });

@@ -4,11 +4,12 @@
 //! comes nearer from an end that both share. A poor cut between cells costs candidates and never an answer. Features that nearly
 //! coincide stay together: no border between them is computed.
 
-use crate::certify::tool_model::feature::{MeridianPoint, is_above_everywhere};
+use crate::certify::space::MeridianPoint;
 use crate::certify::tool_model::outline::Outline;
 use crate::certify::tool_model::rectangle::Rectangle;
 use crate::certify::tool_model::section::Section;
 use crate::certify::tool_model::slab::SectionSlab;
+use touchoff_plane::is_above_everywhere;
 
 /// A rectangle and its candidates.
 #[derive(Clone, Debug)]

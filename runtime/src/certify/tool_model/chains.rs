@@ -1,9 +1,10 @@
 //! Chains: neighbouring slabs whose sides are short lines of a convex curve, as drawings have them for arcs. Bounds that need
 //! not be tight take a chain as one slab.
 
-use crate::certify::tool_model::feature::{Feature, MeridianPoint, cross, dot, minus, norm};
+use crate::certify::space::MeridianPoint;
 use crate::certify::tool_model::section::Section;
 use std::ops::Range;
+use touchoff_plane::{Segment, cross, dot, minus, norm};
 
 /// Neighbouring slabs.
 #[derive(Clone, Debug)]
@@ -12,7 +13,7 @@ pub(crate) struct Chain {
     pub(crate) slabs: Range<usize>,
     /// If there are several, the line that touches their sides from outside, parallel to the chord of them. No point of them is
     /// deeper than its distance under it.
-    pub(crate) line: Option<Feature>,
+    pub(crate) line: Option<Segment>,
     /// The height of the centre and the radius of a ball about a point of the axis that contains the chain and all slabs below it. It
     /// bounds their depth: the way from a point to its foot on the ball leads downward, out of the tool.
     pub(crate) ball: Option<[f64; 2]>,
@@ -91,7 +92,7 @@ impl Section {
     }
 
     /// Returns the line that touches the sides of several slabs, if it bounds their depth: all feet are outside the tool.
-    fn line_outside(&self, slabs: Range<usize>) -> Option<Feature> {
+    fn line_outside(&self, slabs: Range<usize>) -> Option<Segment> {
         let (first, last) = (slabs.start, slabs.end - 1);
         if slabs.len() < MIN_LINES {
             return None;
@@ -109,7 +110,7 @@ impl Section {
         if along_outward(touch) - along_outward(start) > MAX_GAP * self.outline.size {
             return None;
         }
-        let line = Feature { ends: [touch; 2], along, length: 0.0, circle: None, ..from };
+        let line = Segment::line_through(touch, along, from.surface);
         let [low, _] = self.feet(&line, first);
         let [_, high] = self.feet(&line, last);
         let axis = [start[1], end[1]].map(|height| [0.0, height]);

@@ -22,9 +22,10 @@
 //! there. All pieces that are deeper than the limit by the tolerance and the error bound are therefore found.
 
 use crate::certify::rounding;
-use crate::certify::tool_model::feature::{Feature, MeridianPoint, cross, dot, minus, norm};
+use crate::certify::space::MeridianPoint;
 use crate::certify::tool_model::section::Section;
 use std::f64::consts::{FRAC_PI_2, TAU};
+use touchoff_plane::{Segment, cross, dot, minus, norm};
 
 /// The sine up to which headings are opposite, for which rounding decides the sense of the turn. A cusp gets a fan whether it points
 /// into the tool or out of it. The threshold does not matter: a fan that points out yields no witness.
@@ -228,13 +229,13 @@ enum Level {
 }
 
 impl Normals {
-    fn of(feature: &Feature) -> Normals {
+    fn of(feature: &Segment) -> Normals {
         let [from, to] = feature.ends;
         match feature.circle {
             None => Normals::Line {
                 from,
                 along: feature.along,
-                length: feature.length,
+                length: feature.chord,
                 inward: [-feature.along[1], feature.along[0]],
             },
             Some(circle) => {
@@ -254,8 +255,8 @@ impl Normals {
     }
 
     /// Returns the fan of normals between two features that meet in a reflex corner; `None` if they do not.
-    fn fan(before: &Feature, after: &Feature) -> Option<Normals> {
-        let [arrives, leaves] = [before.tangent_at(1), after.tangent_at(0)];
+    fn fan(before: &Segment, after: &Segment) -> Option<Normals> {
+        let [arrives, leaves] = [before.tangent(1), after.tangent(0)];
         let turn = cross(arrives, leaves);
         if turn >= 0.0 && !(turn < CUSP_SINE && dot(arrives, leaves) < 0.0) {
             return None;
@@ -272,8 +273,8 @@ impl Normals {
 
     /// Returns the fan of normals between a feature's normal at its end on the axis and the axis, if the feature
     /// meets its mirror image in a reflex corner there.
-    fn axis_fan(feature: &Feature, end: usize) -> Option<Normals> {
-        let [d, z] = feature.tangent_at(end);
+    fn axis_fan(feature: &Segment, end: usize) -> Option<Normals> {
+        let [d, z] = feature.tangent(end);
         if feature.ends[end][0] != 0.0 || z >= 0.0 {
             return None;
         }
@@ -372,7 +373,7 @@ fn angle(vector: MeridianPoint) -> f64 {
 }
 
 /// Returns the lines and circles that contain all points at the distance `t` from a feature.
-fn levels(feature: &Feature, t: f64) -> impl Iterator<Item = Level> {
+fn levels(feature: &Segment, t: f64) -> impl Iterator<Item = Level> {
     let sides = match feature.circle {
         None => {
             let normal = [-feature.along[1], feature.along[0]];
@@ -449,7 +450,7 @@ mod tests {
     fn of(tool: &dyn Tool, limits: &[(&str, f64)]) -> Vec<CorePoint> {
         let info = tool.info();
         let section = Section::new(info, 1e-12).expect("a profile");
-        let limit = |feature: &Feature| {
+        let limit = |feature: &Segment| {
             let name = &*info.surfaces[feature.surface].name;
             limits
                 .iter()

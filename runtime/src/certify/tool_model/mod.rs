@@ -2,7 +2,6 @@
 
 mod cells;
 pub(crate) mod chains;
-pub(crate) mod feature;
 pub(crate) mod field;
 pub(crate) mod interior;
 pub(crate) mod outline;
@@ -13,8 +12,8 @@ pub(crate) mod rectangle;
 pub(crate) mod section;
 pub(crate) mod slab;
 
+use crate::certify::space::MeridianPoint;
 use crate::certify::space::Point;
-use crate::certify::tool_model::feature::MeridianPoint;
 use crate::certify::tool_model::field::{Field, Scratch};
 use crate::certify::tool_model::owners::Owners;
 use crate::certify::tool_model::profile::ProfileModel;

@@ -1,13 +1,14 @@
 //! The outline of a tool: the features of its profile, and which of them is the nearest.
 
 use crate::certify::rounding;
-use crate::certify::tool_model::feature::{Feature, MeridianPoint, dot, minus, norm, quarters};
+use crate::certify::space::MeridianPoint;
 use crate::tool::ToolInfo;
+use touchoff_plane::{Segment, dot, minus, norm};
 
 /// The features of a profile, in its order.
 #[derive(Clone, Debug)]
 pub(crate) struct Outline {
-    pub(crate) features: Vec<Feature>,
+    pub(crate) features: Vec<Segment>,
     /// The largest distance of a point of the profile from the tip.
     pub(crate) size: f64,
     /// The error bound of a point and its depth.
@@ -17,7 +18,8 @@ pub(crate) struct Outline {
 impl Outline {
     /// Creates the outline of a tool; it is empty if the tool has no profile.
     pub(super) fn new(info: &ToolInfo, error: f64) -> Outline {
-        let features: Vec<Feature> = info.outline.iter().flat_map(quarters).collect();
+        let features: Vec<Segment> =
+            info.outline.iter().flat_map(|segment| segment.geometry().quarters()).collect();
         let size = features.iter().flat_map(|f| f.ends).map(norm).fold(0.0, f64::max);
         Outline { features, size, error }
     }
@@ -59,7 +61,7 @@ impl Outline {
             return false;
         };
         // The direction in which the neighbour leaves the shared end.
-        let tangent = other.tangent_at(1 - end);
+        let tangent = other.tangent(1 - end);
         let outward = if end == 0 { tangent.map(|part| -part) } else { tangent };
         let from = self.features[feature].ends[end];
         corners.iter().all(|p| dot(outward, minus(*p, from)) > 0.0)

@@ -1,8 +1,8 @@
 //! The points that some features own, and how deep they are.
 
 use crate::certify::rounding;
+use crate::certify::space::MeridianPoint;
 use crate::certify::tool_model::cells::Cell;
-use crate::certify::tool_model::feature::{Feature, MeridianPoint, mean};
 use crate::certify::tool_model::outline::Outline;
 use crate::certify::tool_model::peaks::Peaks;
 use crate::certify::tool_model::rectangle::Rectangle;
@@ -11,6 +11,7 @@ use crate::certify::tool_model::slab::SectionSlab;
 use crate::tool::{Region, ToolInfo, bit};
 use std::cell::LazyCell;
 use std::collections::BinaryHeap;
+use touchoff_plane::{Segment, mean};
 
 /// The features to which a query is restricted, by their indices in the section's list. A feature *owns* the points to
 /// which it is the nearest. For a tool known by its depth field the features are its regions.
@@ -218,7 +219,7 @@ impl Owners {
     }
 
     /// Returns whether all owners are farther away than the distance up to which a point outside counts as touching.
-    pub(super) fn are_apart(&self, outline: &Outline, distance: impl Fn(&Feature) -> f64) -> bool {
+    pub(super) fn are_apart(&self, outline: &Outline, distance: impl Fn(&Segment) -> f64) -> bool {
         !self.all()
             && self
                 .owned(outline)

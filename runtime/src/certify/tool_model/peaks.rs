@@ -13,12 +13,13 @@
 //! end a foot is an end of a feature, or a third feature is as near.
 
 use crate::certify::rounding;
+use crate::certify::space::MeridianPoint;
 use crate::certify::tool_model::cells::Cell;
-use crate::certify::tool_model::feature::{Feature, MeridianPoint, minus, norm};
 use crate::certify::tool_model::owners::Owners;
 use crate::certify::tool_model::rectangle::Rectangle;
 use crate::certify::tool_model::section::Section;
-use crate::tool::Circle;
+use touchoff_plane::Circle;
+use touchoff_plane::{Segment, minus, norm};
 
 /// The heights at which depth can have a local maximum, and rectangles in which there may be more of them.
 #[derive(Clone, Debug, Default)]
@@ -178,7 +179,7 @@ impl Section {
 
 /// The border between two features that meet, from the point where they do.
 struct Border<'f> {
-    features: [&'f Feature; 2],
+    features: [&'f Segment; 2],
     from: MeridianPoint,
     /// The unit normals of both at that point, into the tool.
     normals: [MeridianPoint; 2],
@@ -196,8 +197,8 @@ enum Course {
 }
 
 impl Border<'_> {
-    fn new<'f>(section: &Section, first: &'f Feature, second: &'f Feature) -> Border<'f> {
-        let normals = [first.tangent_at(1), second.tangent_at(0)].map(|[d, z]| {
+    fn new<'f>(section: &Section, first: &'f Segment, second: &'f Segment) -> Border<'f> {
+        let normals = [first.tangent(1), second.tangent(0)].map(|[d, z]| {
             let length = d.hypot(z);
             [-z / length, d / length]
         });
@@ -264,7 +265,7 @@ fn bisect([mut low, mut high]: [f64; 2], holds: impl Fn(f64) -> bool) -> f64 {
 
 /// Returns pairs of points of features, or of the lines and circles that they lie on, that have a common normal. An end
 /// of a feature counts as having every normal.
-fn normal_pairs(features: &[Feature]) -> Vec<[MeridianPoint; 2]> {
+fn normal_pairs(features: &[Segment]) -> Vec<[MeridianPoint; 2]> {
     let mut pairs = Vec::new();
     let ends: Vec<MeridianPoint> = features.iter().flat_map(|feature| feature.ends).collect();
     for (index, feature) in features.iter().enumerate() {
@@ -293,7 +294,7 @@ fn normal_pairs(features: &[Feature]) -> Vec<[MeridianPoint; 2]> {
 }
 
 /// Returns the points of a feature's line or circle whose normal passes through a point.
-fn normals(feature: &Feature, p: MeridianPoint) -> impl Iterator<Item = MeridianPoint> + use<> {
+fn normals(feature: &Segment, p: MeridianPoint) -> impl Iterator<Item = MeridianPoint> + use<> {
     let points = match &feature.circle {
         None => [Some(feature.line_point(feature.position(p))), None],
         Some(Circle { centre, radius, .. }) => {
@@ -309,7 +310,7 @@ fn normals(feature: &Feature, p: MeridianPoint) -> impl Iterator<Item = Meridian
 }
 
 /// Returns the pairs of points of a line and a circle on their common normal.
-fn common(line: &Feature, circle: &Circle) -> [[MeridianPoint; 2]; 2] {
+fn common(line: &Segment, circle: &Circle) -> [[MeridianPoint; 2]; 2] {
     let Circle { centre, radius, .. } = *circle;
     let foot = line.line_point(line.position(centre));
     let normal = [-line.along[1], line.along[0]];

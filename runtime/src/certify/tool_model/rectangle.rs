@@ -1,6 +1,7 @@
 //! Rectangles of the half plane.
 
-use crate::certify::tool_model::feature::{MeridianPoint, minus};
+use crate::certify::space::MeridianPoint;
+use touchoff_plane::minus;
 
 /// A rectangle of the half plane.
 #[derive(Clone, Copy, Debug, Default)]

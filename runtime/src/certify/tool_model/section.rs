@@ -2,12 +2,13 @@
 //!
 //! Points are `[d, z]` in the tool's frame and unit.
 
+use crate::certify::space::MeridianPoint;
 use crate::certify::tool_model::cells::CellTree;
-use crate::certify::tool_model::feature::{MeridianPoint, Triangle, cross, mean, minus, norm};
 use crate::certify::tool_model::outline::Outline;
 use crate::certify::tool_model::owners::Owners;
 use crate::certify::tool_model::slab::SectionSlab;
 use crate::tool::ToolInfo;
+use touchoff_plane::{Triangle, cross, mean, minus, norm};
 
 /// The sine of a reflex corner's turn up to which it is left out. A corner only lowers bounds, so that no result is wrong. No point
 /// is nearer to such a corner than to the lines that meet there by more than 5e-19 of its distance.
@@ -64,7 +65,7 @@ impl Section {
         [low, high]: [f64; 2],
     ) -> impl Iterator<Item = ReflexCorner> {
         self.outline.features.windows(2).filter_map(move |pair| {
-            let turn = cross(pair[0].tangent_at(1), pair[1].tangent_at(0));
+            let turn = cross(pair[0].tangent(1), pair[1].tangent(0));
             let point = pair[1].ends[0];
             (turn < -MIN_REFLEX_TURN && low <= point[1] && point[1] <= high).then(|| ReflexCorner {
                 point,
@@ -90,9 +91,9 @@ impl Section {
     /// Returns the distance of a point on the tool's side of a slab's sides, and the side for which it is less.
     #[inline]
     fn inner_distance(&self, slab: &SectionSlab, p: MeridianPoint) -> (f64, usize) {
-        let outer = (self.side(slab).signed_distance(p), slab.side);
+        let outer = (self.side(slab).continued_distance(p), slab.side);
         let Some(side) = slab.inner else { return outer };
-        let inner = (self.outline.features[side].signed_distance(p), side);
+        let inner = (self.outline.features[side].continued_distance(p), side);
         if inner.0 < outer.0 { inner } else { outer }
     }
 
@@ -112,7 +113,7 @@ impl Section {
         let length = norm(away);
         // Rounding decides on which side of the surface a point so near to it is.
         if length <= self.outline.contact_tolerance() {
-            return feature.signed_gradient(p).map(|part| -part);
+            return feature.continued_gradient(p).map(|part| -part);
         }
         let sense = if self.contains(p) { -1.0 } else { 1.0 };
         away.map(|part| sense * part / length)
@@ -165,7 +166,7 @@ impl Section {
             let value = if other { f64::NEG_INFINITY } else { over };
             return Depth {
                 value,
-                gradient: self.outline.features[side].signed_gradient(p),
+                gradient: self.outline.features[side].continued_gradient(p),
                 feature: side,
             };
         }
@@ -201,14 +202,14 @@ impl Section {
         threshold: f64,
     ) -> f64 {
         let side = self.side(slab);
-        let out = side.max_signed_distance_bound(triangle);
+        let out = side.max_continued_distance(triangle);
         let over = slab.inner.map_or(out, |inner| {
-            out.min(self.outline.features[inner].max_signed_distance_bound(triangle))
+            out.min(self.outline.features[inner].max_continued_distance(triangle))
         });
         if over < 0.0 {
             // A point so little outside touches; whether an owner does is worth knowing only above the threshold.
-            let other = over > threshold
-                && owners.are_apart(&self.outline, |f| f.min_distance_bound(triangle));
+            let other =
+                over > threshold && owners.are_apart(&self.outline, |f| f.min_distance(triangle));
             return if other { f64::NEG_INFINITY } else { over };
         }
         // The signed distance from the side is a bound only where feet are on the surface or outside the tool.
@@ -218,14 +219,14 @@ impl Section {
             if bound <= threshold {
                 return bound;
             }
-            bound = bound.min(self.outline.features[*candidate].max_distance_bound(triangle));
+            bound = bound.min(self.outline.features[*candidate].max_distance(triangle));
         }
         if bound > threshold && !owners.all() {
             // Depth is the distance of the nearest feature. An owner that is farther by more than the errors of both
             // distances owns no point here.
             let margin = self.outline.owner_margin() + 2.0 * slack;
             if owners.own_nothing(&self.outline, triangle, margin, |owner| {
-                self.outline.features[owner].min_distance_bound(triangle) > bound + margin
+                self.outline.features[owner].min_distance(triangle) > bound + margin
             }) {
                 return f64::NEG_INFINITY;
             }
@@ -262,11 +263,7 @@ impl Section {
             // A distance has the Lipschitz constant 1.
             let coarse = reach - feature.distance(middle);
             let near = coarse > best.max(bound);
-            bound = bound.max(if near {
-                -feature.min_distance_bound(triangle).max(0.0)
-            } else {
-                coarse
-            });
+            bound = bound.max(if near { -feature.min_distance(triangle).max(0.0) } else { coarse });
         }
         bound
     }

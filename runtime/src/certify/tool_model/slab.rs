@@ -1,10 +1,10 @@
 //! Slabs: regions of the half plane between two heights, and inward of one feature, their *side*. A slab extends to the axis, or to
 //! another feature, its *inner* side, where the profile overhangs. No feature ends between a slab's heights.
 
-use crate::certify::tool_model::feature::Feature;
 use crate::certify::tool_model::outline::Outline;
 use crate::certify::tool_model::rectangle::Rectangle;
 use crate::certify::tool_model::section::Section;
+use touchoff_plane::Segment;
 
 /// A region between two heights.
 #[derive(Clone, Debug)]
@@ -76,24 +76,23 @@ impl Outline {
 
     /// Returns the range along a line in which its feet are outside the tool, provided that they are between the
     /// heights of a slab.
-    fn feet(&self, line: &Feature, slabs: &[SectionSlab], index: usize) -> [f64; 2] {
+    fn feet(&self, line: &Segment, slabs: &[SectionSlab], index: usize) -> [f64; 2] {
         let SectionSlab { low, high, .. } = slabs[index];
         let mut below = slabs[..index].iter().rev();
         let below = below.find(|other| !self.is_outside(line, other));
         let above = slabs[index + 1..].iter().find(|other| !self.is_outside(line, other));
         if [below, above].into_iter().flatten().any(|other| other.low < high && low < other.high) {
             // The tool continues beyond a gap: only feet on the side itself are known to be on the surface.
-            return [0.0, line.length];
+            return [0.0, line.chord];
         }
         [
             below.map_or(f64::NEG_INFINITY, |other| line.position_at_height(other.high).min(0.0)),
-            above
-                .map_or(f64::INFINITY, |other| line.position_at_height(other.low).max(line.length)),
+            above.map_or(f64::INFINITY, |other| line.position_at_height(other.low).max(line.chord)),
         ]
     }
 
     /// Returns whether a line stays outside the tool between a slab's heights.
-    fn is_outside(&self, line: &Feature, slab: &SectionSlab) -> bool {
+    fn is_outside(&self, line: &Segment, slab: &SectionSlab) -> bool {
         let [low, high] = [slab.low, slab.high].map(|z| line.line_radius_at(z));
         match self.features[slab.side].circle {
             None => low >= slab.radii[0] && high >= slab.radii[1],
@@ -105,7 +104,7 @@ impl Outline {
 
 impl SectionSlab {
     fn new(
-        features: &[Feature],
+        features: &[Segment],
         [low, high]: [f64; 2],
         side: usize,
         inner: Option<usize>,
@@ -117,7 +116,7 @@ impl SectionSlab {
             features[inner].radius_at(low).min(features[inner].radius_at(high))
         });
         // Feet on the side itself are on the surface. How far they may be beyond it depends on the other slabs.
-        let feet = [0.0, features[side].length];
+        let feet = [0.0, features[side].chord];
         SectionSlab { low, high, side, inner, hole, radii, radius, feet }
     }
 }
@@ -125,12 +124,12 @@ impl SectionSlab {
 impl Section {
     /// Returns the range along a line in which its feet are outside the tool, provided that they are between the
     /// heights of a slab.
-    pub(crate) fn feet(&self, line: &Feature, slab: usize) -> [f64; 2] {
+    pub(crate) fn feet(&self, line: &Segment, slab: usize) -> [f64; 2] {
         self.outline.feet(line, &self.slabs, slab)
     }
 
     /// Returns the feature that is the outer side of a slab.
-    pub(crate) fn side(&self, slab: &SectionSlab) -> &Feature {
+    pub(crate) fn side(&self, slab: &SectionSlab) -> &Segment {
         &self.outline.features[slab.side]
     }
 
@@ -140,13 +139,13 @@ impl Section {
         let line = &self.outline.features[index];
         match self.slabs.iter().position(|slab| slab.side == index) {
             Some(slab) => self.feet(line, slab),
-            None => [0.0, line.length],
+            None => [0.0, line.chord],
         }
     }
 
     /// Returns whether no point of a slab is deeper than its distance from a line that touches the slab's side: all
     /// feet are on the surface or outside.
-    pub(crate) fn tangent_bounds_slab(&self, line: &Feature, slab: usize) -> bool {
+    pub(crate) fn tangent_bounds_slab(&self, line: &Segment, slab: usize) -> bool {
         let SectionSlab { low, high, hole, radii, .. } = self.slabs[slab];
         let [from, to] = self.feet(line, slab);
         let corners = [[hole, low], [hole, high], [radii[0], low], [radii[1], high]];
@@ -177,9 +176,9 @@ impl Section {
             let positions = corners.map(|corner| line.position(corner));
             line.circle.is_none()
                 && line.along[1] > 0.0
-                && corners.iter().all(|corner| line.signed_distance(*corner) >= 0.0)
+                && corners.iter().all(|corner| line.continued_distance(*corner) >= 0.0)
                 && positions.iter().any(|at| *at > 0.0)
-                && positions.iter().any(|at| *at < line.length)
+                && positions.iter().any(|at| *at < line.chord)
         })
     }
 }

@@ -5,9 +5,10 @@
 //! holds on the line. An interval whose bound exceeds the greatest depth found is cut where depth is likely to be
 //! greatest, until none is left.
 
-use crate::certify::tool_model::feature::{MeridianPoint, Triangle, dot};
+use crate::certify::space::MeridianPoint;
 use crate::certify::tool_model::owners::Owners;
 use crate::certify::tool_model::section::{Depth, Section};
+use touchoff_plane::{Triangle, dot};
 
 /// The least part of an interval that a cut where two bounds meet leaves: one nearer to an end would leave almost the whole interval
 /// to be bounded again.

@@ -107,8 +107,8 @@ impl LocalTriangle {
 
     fn edges(&self) -> [SearchLine; 3] {
         let [a, b, c] = self.corners;
-        [[a, b], [b, c], [c, a]]
-            .map(|[from, to]| SearchLine::new(from, minus(to, from), [0.0, 1.0]))
+        let edge = |from: Point, to: Point| SearchLine::new(from, minus(to, from), [0.0, 1.0]);
+        [edge(a, b), edge(b, c), edge(c, a)]
     }
 }
 

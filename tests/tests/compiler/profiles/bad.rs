@@ -124,7 +124,7 @@ fn balls_drawn_as_chords_are_exact() {
     for (decimals, end) in [(17, 0.0), (14, 0.0), (12, 0.0), (17, 0.4 * PI)] {
         let ball = drawn(5.0, 120, decimals, end);
         assert_exact(&ball);
-        let tool = touchoff_dsl::compile(&Source::new("t.tool", &ball.text()));
+        let tool = touchoff_dsl::compile(&Source::new("t.tool", ball.text()));
         let curves = tool.into_tool().expect("as before").model.curves.len();
         assert!(curves < 8 * 120, "{decimals} {end}: {curves}");
     }
