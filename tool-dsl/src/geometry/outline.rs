@@ -1,4 +1,4 @@
-//! A profile as geometry: segments and their distance functions.
+//! A profile as geometry: segments in 256 bits, the same in doubles, and the expressions of their distances.
 //!
 //! Everything is in the tool's frame, `[d, z]`, counter-clockwise: the material is on the left.
 
