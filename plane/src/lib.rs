@@ -1,7 +1,7 @@
 //! The plane geometry of a profile: points of the half plane `[d, z]`, where `d` is the distance from the tool's axis, lines and
-//! arcs with the material on their left, their distances, feet, normals and tangents, and bounds of distances over polygons.
+//! arcs with the tool on their left, their distances, feet, normals and tangents.
 //!
-//! The compiler of tools, the certifier, drawings, posture maps and the page all take a profile's geometry from here; coordinates
+//! The compiler of tools, the certifier, drawings, posture maps, stock, reports and the page all take a profile's geometry from here; coordinates
 //! are in whatever unit the profile has.
 //!
 //! **Rounding.** Let S be the largest absolute value of the coordinates and radii involved, and u = 2⁻⁵³. A distance, signed or not, errs by at most 16 u S, and a
@@ -14,11 +14,8 @@
 
 #![deny(missing_docs, missing_debug_implementations, unnameable_types)]
 
-mod bounds;
-mod quarter;
 mod segment;
 mod vector;
 
-pub use bounds::{Triangle, is_above_everywhere, mean};
-pub use segment::{Circle, Place, Segment};
+pub use segment::{ANGLE_ROUNDING, Circle, Place, Segment};
 pub use vector::{Point, angle_between, cross, dot, minus, norm, turned, unit};

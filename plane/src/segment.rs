@@ -4,7 +4,7 @@ use crate::vector::{Point, angle_between, cross, dot, minus, norm, turned, unit}
 use std::f64::consts::TAU;
 
 /// The angle up to which an arc's ends, or an end and a quarter of the circle, are one: rounding may have exchanged their angles.
-pub(crate) const ANGLE_ROUNDING: f64 = 1e-9;
+pub const ANGLE_ROUNDING: f64 = 1e-9;
 
 /// The circle of an arc.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,17 +13,17 @@ pub struct Circle {
     pub centre: Point,
     /// The radius.
     pub radius: f64,
-    /// True if the material lies inside the circle; the arc then runs counter-clockwise.
+    /// True if the tool lies inside the circle; the arc then runs counter-clockwise.
     pub convex: bool,
 }
 
 impl Circle {
-    /// Returns the circle of an arc that bulges out of the material.
+    /// Returns the circle of an arc that bulges out of the tool.
     pub const fn convex(centre: Point, radius: f64) -> Circle {
         Circle { centre, radius, convex: true }
     }
 
-    /// Returns the circle of an arc that bulges into the material.
+    /// Returns the circle of an arc that bulges into the tool.
     pub const fn concave(centre: Point, radius: f64) -> Circle {
         Circle { centre, radius, convex: false }
     }
@@ -36,13 +36,13 @@ impl Circle {
     }
 }
 
-/// A line or an arc of a profile, with the material on its left. Distances, nearest points and sectors are those of arcs of at most half a turn, of
+/// A line or an arc of a profile, with the tool on its left. Distances, nearest points and sectors are those of arcs of at most half a turn, of
 /// which [`Segment::halves`] makes any.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segment {
     /// The start and the end.
     pub ends: [Point; 2],
-    /// The unit vector from end to end; 0 if the ends coincide.
+    /// The unit vector from end to end; if the ends coincide that of [`Segment::line_through`], or 0.
     pub along: Point,
     /// The distance between the ends.
     pub chord: f64,
@@ -62,7 +62,7 @@ pub struct Place {
 }
 
 impl Place {
-    /// Returns the unit normal out of the material.
+    /// Returns the unit normal out of the tool.
     pub fn outward(&self) -> Point {
         [self.along[1], -self.along[0]]
     }
@@ -147,6 +147,17 @@ impl Segment {
         [0, 1].map(|k| self.ends[0][k] + at * self.along[k])
     }
 
+    /// Returns the position at which the line reaches a height.
+    pub fn position_at_height(&self, z: f64) -> f64 {
+        (z - self.ends[0][1]) / self.along[1]
+    }
+
+    /// Returns the distance of the line from the axis at a height, also beyond its ends.
+    pub fn line_radius_at(&self, z: f64) -> f64 {
+        let slope = self.along[0] / self.along[1];
+        self.ends[0][0] + slope * (z - self.ends[0][1])
+    }
+
     /// Returns the unit direction of travel at its start (0) or end (1).
     pub fn tangent(&self, end: usize) -> Point {
         let Some(Circle { centre, convex, .. }) = self.circle else { return self.along };
@@ -154,7 +165,7 @@ impl Segment {
         if convex { [-z, d] } else { [z, -d] }
     }
 
-    /// Returns the unit normal into the material at the foot of a point on the whole line or circle; NaN in the centre.
+    /// Returns the unit normal into the tool at the foot of a point on the whole line or circle; NaN in the centre.
     pub fn inward(&self, p: Point) -> Point {
         match self.circle {
             None => [-self.along[1], self.along[0]],
@@ -163,7 +174,7 @@ impl Segment {
         }
     }
 
-    /// Returns the signed distance of a point from the whole line or circle, above 0 on the material's side.
+    /// Returns the signed distance of a point from the whole line or circle, above 0 on the tool's side; of a line whose ends coincide always 0.
     #[inline]
     pub fn signed_distance(&self, p: Point) -> f64 {
         match self.circle {

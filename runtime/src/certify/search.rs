@@ -186,7 +186,7 @@ impl QuerySetting<'_> {
         let d = x.hypot(y);
         let [cosine, sine] = if d > 0.0 { [x / d, y / d] } else { [1.0, 0.0] };
         let to_tool = |[d, z]: MeridianPoint| Vector3::new(cosine * d, sine * d, z);
-        let foot = to_tool(section.outline.features[best.feature].foot([d, z]));
+        let foot = to_tool(section.outline.features[best.feature].segment.foot([d, z]));
         Some(ToolPoint {
             point: self.to_world(pose, foot.into()),
             normal: pose.rotation() * to_tool(section.normal(best.feature, [d, z])),

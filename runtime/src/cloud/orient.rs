@@ -61,11 +61,11 @@ fn orient(normals: &mut [Vector3<f64>], neighbours: &[Vec<u32>]) {
     for (point, near) in (0..).zip(neighbours) {
         near.iter().for_each(|near| linked[*near as usize].push(point));
     }
-    let mut is_turned = vec![false; normals.len()];
+    let mut is_visited = vec![false; normals.len()];
     for seed in 0..normals.len() {
         let mut open = BinaryHeap::from([(Reverse(0u64), seed as u32, seed as u32)]);
         while let Some((_, point, from)) = open.pop() {
-            if std::mem::replace(&mut is_turned[point as usize], true) {
+            if std::mem::replace(&mut is_visited[point as usize], true) {
                 continue;
             }
             let before = normals[from as usize];
@@ -74,7 +74,7 @@ fn orient(normals: &mut [Vector3<f64>], neighbours: &[Vec<u32>]) {
                 *normal = -*normal;
             }
             let normal = normals[point as usize];
-            for near in linked[point as usize].iter().filter(|near| !is_turned[**near as usize]) {
+            for near in linked[point as usize].iter().filter(|near| !is_visited[**near as usize]) {
                 let bend = 1.0 - normals[*near as usize].dot(&normal).abs();
                 // The bits of numbers from 0 are in their order.
                 open.push((Reverse(bend.max(0.0).to_bits()), *near, point));

@@ -59,7 +59,7 @@ impl Segment {
         Segment { from, to, circle, span, geometry }
     }
 
-    /// Returns the expression of [`Segment::signed`].
+    /// Returns the expression of [`touchoff_plane::Segment::signed_distance`].
     pub(crate) fn depth(&self, graph: &mut Graph) -> Option<Id> {
         match &self.circle {
             None => {
@@ -78,7 +78,7 @@ impl Segment {
         }
     }
 
-    /// Returns the expressions of [`Segment::sector`], up to a positive factor.
+    /// Returns the expressions of [`touchoff_plane::Segment::sector`], up to a positive factor.
     pub(crate) fn sides(&self, graph: &mut Graph) -> Option<[Id; 2]> {
         match &self.circle {
             None => {

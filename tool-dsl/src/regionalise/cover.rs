@@ -571,7 +571,7 @@ impl Section<'_> {
     }
 
     /// Returns the point of a corner, or the ends of a segment.
-    fn end_points(&self, feature: usize) -> Vec<Point> {
+    pub(super) fn end_points(&self, feature: usize) -> Vec<Point> {
         match self.features[feature] {
             Feature::Corner(previous) => vec![self.corner_at(previous)],
             Feature::Piece(piece) => self.outline[piece].geometry.ends.to_vec(),

@@ -252,17 +252,20 @@ impl Section<'_> {
     /// at most at one rate everywhere. Polygons err by rounding of distances, divided by that rate. Where many borders meet in
     /// one point but for rounding, as those of a ball drawn as chords do in its centre, two polygons touch only about it: of points
     /// as near as that to a border, it does not matter which of the two has them, and all others are told apart by their other
-    /// neighbours' borders.
+    /// neighbours' borders. Segments that share an end always have one, however short.
     fn contact(&self, a: usize, b: usize) -> Contact {
         let distance = TOUCHING_FRACTION * self.size;
         let [Some(one), Some(other)] = [a, b].map(|feature| self.line_direction(feature)) else {
             return Contact { distance, least_extent: 0.0 };
         };
         let rate = norm(minus(one, other));
-        Contact {
-            distance: distance.min(TIE_TOLERANCES * self.tolerance() / rate),
-            least_extent: self.size * MAX_LEFT_OUT_FRACTION.min(LEFT_OUT_FRACTION / rate),
-        }
+        let share_an_end = self.end_points(a).iter().any(|end| self.end_points(b).contains(end));
+        let least_extent = if share_an_end {
+            0.0
+        } else {
+            self.size * MAX_LEFT_OUT_FRACTION.min(LEFT_OUT_FRACTION / rate)
+        };
+        Contact { distance: distance.min(TIE_TOLERANCES * self.tolerance() / rate), least_extent }
     }
 
     /// Returns a point with the nearest feature as its owner, or the outside; `None` if rounding decides about that.

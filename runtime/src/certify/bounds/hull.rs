@@ -107,7 +107,7 @@ impl<R: Real> Hull<R> {
         let sides: Vec<usize> = section.slabs.iter().map(|slab| slab.side).collect();
         for (index, feature) in section.outline.features.iter().enumerate() {
             if owners.is_owned(index) && !sides.contains(&index) {
-                let [[d0, z0], [d1, z1]] = feature.ends;
+                let [[d0, z0], [d1, z1]] = feature.segment.ends;
                 let heights = [z0.min(z1) - error, z0.max(z1) + error];
                 hull.slabs
                     .push(HullSlab::under(heights, vec![plane([1.0, 0.0], [d0.max(d1), 0.0])]));
@@ -248,9 +248,9 @@ impl<R: Real> HullSlab<R> {
     fn add_side(&mut self, section: &Section, index: usize) {
         let slab = &section.slabs[index];
         let side = &section.outline.features[slab.side];
-        let [[d0, z0], [d1, z1]] = side.ends;
+        let [[d0, z0], [d1, z1]] = side.segment.ends;
         let slope = (d1 - d0) / (z1 - z0);
-        let convex = side.circle.is_some_and(|circle| circle.convex);
+        let convex = side.segment.circle.is_some_and(|circle| circle.convex);
         let line = side.tangent_line();
         let is_bound = line.as_ref().is_some_and(|line| section.tangent_bounds_slab(line, index));
         if let Some(line) = &line {
@@ -263,11 +263,11 @@ impl<R: Real> HullSlab<R> {
         if !is_bound && slope != 0.0 && slope.abs() <= 2.0 && !convex {
             // Radially under the chord of the side, beyond which neither a line nor a concave arc reaches.
             // Steeper planes have larger errors than `margin` in `search` allows for.
-            self.planes.push(plane([1.0, -slope], side.ends[0]));
+            self.planes.push(plane([1.0, -slope], side.segment.ends[0]));
         }
         for line in section.lines_beside(slab) {
             let feet = section.outside_feet(line);
-            self.guarded.push(GuardedPlane::new(&section.outline.features[line], feet));
+            self.guarded.push(GuardedPlane::new(&section.outline.features[line].segment, feet));
         }
         // For an arc that does not reach the axis, the feet next to it are not on the surface.
         if d0.min(d1) == 0.0

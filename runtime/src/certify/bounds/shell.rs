@@ -46,7 +46,7 @@ impl Shell {
         let slabs = owned.filter_map(|(index, feature)| {
             // A level feature has no slab of its own. It needs none if all features are owned.
             let level = !section.slabs.iter().any(|slab| slab.side == index);
-            let [[d0, z0], [d1, z1]] = feature.ends;
+            let [[d0, z0], [d1, z1]] = feature.segment.ends;
             let ball = if level { None } else { feature.ball(section.outline.size) };
             (!(owners.all() && level)).then(|| ShellSlab {
                 low: z0.min(z1) as f32,

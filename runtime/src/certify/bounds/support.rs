@@ -35,10 +35,9 @@ impl<R: Real> Support<R> {
     /// with an arc of so large a circle that the rounding of a normal's length, times its radius, is more than the margin.
     pub(crate) fn new(section: &Section) -> Option<Support<R>> {
         let size = section.outline.size;
-        let rounded =
-            section.outline.features.iter().filter_map(|feature| {
-                Some((feature, feature.circle.filter(|circle| circle.convex)?))
-            });
+        let rounded = section.outline.features.iter().filter_map(|feature| {
+            Some((feature, feature.segment.circle.filter(|circle| circle.convex)?))
+        });
         let is_large = |circle: &Circle| {
             let [d, z] = circle.centre;
             circle.radius.max(d.abs()).max(z.abs()) > size
@@ -52,12 +51,12 @@ impl<R: Real> Support<R> {
             centre: circle.centre.map(R::of),
             radius: R::of(circle.radius),
             normals: [0, 1].map(|end| {
-                let [d, z] = feature.tangent(end);
+                let [d, z] = feature.segment.tangent(end);
                 [z, -d].map(R::of)
             }),
         });
         let mut corners: Vec<MeridianPoint> =
-            section.outline.features.iter().flat_map(|feature| feature.ends).collect();
+            section.outline.features.iter().flat_map(|feature| feature.segment.ends).collect();
         // Neighbours share an end.
         corners.dedup();
         let [low, high] = section.reach();

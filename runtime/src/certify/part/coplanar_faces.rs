@@ -15,7 +15,7 @@ const MIN_FACE_TRIANGLES: usize = 8;
 const MAX_NODE_FACES: usize = 256;
 
 /// The index that stands for no face.
-const NONE: u32 = u32::MAX;
+const NO_FACE: u32 = u32::MAX;
 
 /// The flat faces of a part. Triangles are given by their indices in the tree's order.
 #[derive(Clone, Debug)]
@@ -98,7 +98,7 @@ impl CoplanarFaces {
     /// Finds the faces of triangles, given by their corners and their [`neighbours`](crate::mesh::neighbours). Points no farther than
     /// `flat` from a triangle's plane count as in it.
     pub(crate) fn new(corners: &[[Point; 3]], neighbours: &[[u32; 3]], flat: f64) -> CoplanarFaces {
-        let (mut of, mut faces) = (vec![NONE; corners.len()], Vec::new());
+        let (mut of, mut faces) = (vec![NO_FACE; corners.len()], Vec::new());
         let mut used = vec![false; corners.len()];
         let mut face = Vec::new();
         for seed in 0..corners.len() {
@@ -137,7 +137,7 @@ impl CoplanarFaces {
             faces.push(Face::around(&face, corners, normal));
         }
         let triangles =
-            of.iter().map(|face| if *face == NONE { &[] } else { slice::from_ref(face) });
+            of.iter().map(|face| if *face == NO_FACE { &[] } else { slice::from_ref(face) });
         let mut levels = vec![NodeFaces::above(triangles)];
         while let Some(below) = levels.last().filter(|below| below.len() > 1) {
             levels.push(NodeFaces::above((0..below.len()).map(|node| below.of(node))));
@@ -154,7 +154,7 @@ impl CoplanarFaces {
 
     /// Returns the face of a triangle.
     pub(crate) fn of_triangle(&self, index: u32) -> Option<u32> {
-        Some(self.of[index as usize]).filter(|face| *face != NONE)
+        Some(self.of[index as usize]).filter(|face| *face != NO_FACE)
     }
 }
 

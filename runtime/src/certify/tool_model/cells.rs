@@ -6,10 +6,10 @@
 
 use crate::certify::space::MeridianPoint;
 use crate::certify::tool_model::outline::Outline;
+use crate::certify::tool_model::quarter::is_above_everywhere;
 use crate::certify::tool_model::rectangle::Rectangle;
 use crate::certify::tool_model::section::Section;
 use crate::certify::tool_model::slab::SectionSlab;
-use touchoff_plane::is_above_everywhere;
 
 /// A rectangle and its candidates.
 #[derive(Clone, Debug)]
@@ -50,7 +50,7 @@ const MAX_COMPARED: usize = 8;
 impl CellTree {
     /// Divides the rectangle about a profile.
     pub(super) fn new(outline: &Outline) -> CellTree {
-        let ends = outline.features.iter().flat_map(|feature| feature.ends);
+        let ends = outline.features.iter().flat_map(|feature| feature.segment.ends);
         let points = ends.map(|end| Rectangle { low: end, high: end });
         let whole = points.reduce(|one, other| one.widened(&other)).unwrap_or_default();
         let mut tree = CellTree { whole, nodes: Vec::new() };
@@ -141,7 +141,8 @@ impl Outline {
     pub(super) fn cell(&self, rectangle: Rectangle, among: &[usize], margin: f64) -> Cell {
         let (middle, reach) = rectangle.ball();
         let corners = rectangle.corners();
-        let distances = among.iter().map(|index| (self.features[*index].distance(middle), *index));
+        let distances =
+            among.iter().map(|index| (self.features[*index].segment.distance(middle), *index));
         let mut distances: Vec<(f64, usize)> = distances.collect();
         distances.sort_by(|one, other| one.0.total_cmp(&other.0));
         // Within the reach, a distance changes by at most the reach, and so does the least of all.
@@ -150,7 +151,7 @@ impl Outline {
         let mut upper_bounds: Vec<[f64; 4]> = Vec::new();
         for (_, index) in distances.into_iter().take_while(|(distance, _)| *distance <= farthest) {
             let feature = &self.features[index];
-            let lower = feature.affine_lower_bounds(&corners);
+            let lower = feature.lower_bounds(&corners);
             let is_farther =
                 upper_bounds.iter().any(|upper| is_above_everywhere(lower, *upper, margin));
             if is_farther || self.hidden_by_neighbours(index, &corners) {
@@ -158,7 +159,7 @@ impl Outline {
             }
             candidates.push(index);
             if upper_bounds.len() < MAX_COMPARED {
-                upper_bounds.push(feature.convex_upper_bounds(&corners));
+                upper_bounds.push(feature.upper_bounds(&corners));
             }
         }
         candidates.sort_unstable();

@@ -2,6 +2,7 @@
 //! not be tight take a chain as one slab.
 
 use crate::certify::space::MeridianPoint;
+use crate::certify::tool_model::quarter::MAX_BALL;
 use crate::certify::tool_model::section::Section;
 use std::ops::Range;
 use touchoff_plane::{Segment, cross, dot, minus, norm};
@@ -73,22 +74,23 @@ impl Section {
         let has_hole = below.hole > 0.0 || above.hole > 0.0;
         !has_hole
             && below.high == above.low
-            && first.circle.is_none()
-            && second.circle.is_none()
-            && first.ends[1] == second.ends[0]
-            && cross(first.along, second.along) >= 0.0
-            && dot(first.along, second.along) > 0.0
+            && first.segment.circle.is_none()
+            && second.segment.circle.is_none()
+            && first.segment.ends[1] == second.segment.ends[0]
+            && cross(first.segment.along, second.segment.along) >= 0.0
+            && dot(first.segment.along, second.segment.along) > 0.0
     }
 
     /// Returns the sine of the angle between the sides of two slabs.
     fn turn_sine(&self, first: usize, second: usize) -> f64 {
-        let [first, second] = [first, second].map(|slab| self.side(&self.slabs[slab]).along);
+        let [first, second] =
+            [first, second].map(|slab| self.side(&self.slabs[slab]).segment.along);
         cross(first, second)
     }
 
     /// Returns the ends of the sides of slabs that form a chain.
     fn vertices(&self, slabs: Range<usize>) -> impl Iterator<Item = MeridianPoint> {
-        slabs.flat_map(|slab| self.side(&self.slabs[slab]).ends)
+        slabs.flat_map(|slab| self.side(&self.slabs[slab]).segment.ends)
     }
 
     /// Returns the line that touches the sides of several slabs, if it bounds their depth: all feet are outside the tool.
@@ -98,7 +100,7 @@ impl Section {
             return None;
         }
         let [from, to] = [first, last].map(|slab| *self.side(&self.slabs[slab]));
-        let (start, end) = (from.ends[0], to.ends[1]);
+        let (start, end) = (from.segment.ends[0], to.segment.ends[1]);
         let chord = minus(end, start);
         let along = chord.map(|part| part / norm(chord));
         let outward = [along[1], -along[0]];
@@ -110,7 +112,7 @@ impl Section {
         if along_outward(touch) - along_outward(start) > MAX_GAP * self.outline.size {
             return None;
         }
-        let line = Segment::line_through(touch, along, from.surface);
+        let line = Segment::line_through(touch, along, from.segment.surface);
         let [low, _] = self.feet(&line, first);
         let [_, high] = self.feet(&line, last);
         let axis = [start[1], end[1]].map(|height| [0.0, height]);
@@ -123,13 +125,14 @@ impl Section {
     fn tip_ball(&self) -> Option<TipBall> {
         let first = self.slabs.first()?;
         let side = self.side(first);
-        let tip = side.ends[0];
-        if self.overhangs || tip != [0.0, first.low] || side.circle.is_some() {
+        let tip = side.segment.ends[0];
+        if self.overhangs || tip != [0.0, first.low] || side.segment.circle.is_some() {
             return None;
         }
         let count = 1 + (1..self.slabs.len()).take_while(|slab| self.continues(*slab)).count();
         (MIN_LINES..=count).rev().find_map(|slab_count| {
-            let [across, height] = minus(self.side(&self.slabs[slab_count - 1]).ends[1], tip);
+            let [across, height] =
+                minus(self.side(&self.slabs[slab_count - 1]).segment.ends[1], tip);
             // Above its centre the way to the foot would lead upward.
             let radius = 0.5 * (across * across + height * height) / height;
             let centre = tip[1] + radius;
@@ -138,7 +141,7 @@ impl Section {
                 [least.min(distance), greatest.max(distance)]
             });
             let is_close = greatest - least <= MAX_DEVIATION * radius;
-            let is_small = greatest.max(centre.abs()) <= 4.0 * self.outline.size;
+            let is_small = greatest.max(centre.abs()) <= MAX_BALL * self.outline.size;
             (height <= radius && is_close && is_small)
                 .then_some(TipBall { slab_count, ball: [centre, greatest] })
         })

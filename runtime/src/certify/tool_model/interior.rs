@@ -23,9 +23,10 @@
 
 use crate::certify::rounding;
 use crate::certify::space::MeridianPoint;
+use crate::certify::tool_model::quarter::Quarter;
 use crate::certify::tool_model::section::Section;
 use std::f64::consts::{FRAC_PI_2, TAU};
-use touchoff_plane::{Segment, cross, dot, minus, norm};
+use touchoff_plane::{cross, dot, minus, norm};
 
 /// The sine up to which headings are opposite, for which rounding decides the sense of the turn. A cusp gets a fan whether it points
 /// into the tool or out of it. The threshold does not matter: a fan that points out yields no witness.
@@ -142,7 +143,8 @@ impl Interior<'_> {
         let features = self.section.outline.features.iter().zip(self.limits);
         features
             .map(|(feature, limit)| {
-                (depth - limit - tolerance_and_error).max(0.5 * (feature.distance(p) - depth))
+                (depth - limit - tolerance_and_error)
+                    .max(0.5 * (feature.segment.distance(p) - depth))
             })
             .fold(depth, f64::min)
     }
@@ -229,14 +231,14 @@ enum Level {
 }
 
 impl Normals {
-    fn of(feature: &Segment) -> Normals {
-        let [from, to] = feature.ends;
-        match feature.circle {
+    fn of(feature: &Quarter) -> Normals {
+        let [from, to] = feature.segment.ends;
+        match feature.segment.circle {
             None => Normals::Line {
                 from,
-                along: feature.along,
-                length: feature.chord,
-                inward: [-feature.along[1], feature.along[0]],
+                along: feature.segment.along,
+                length: feature.segment.chord,
+                inward: [-feature.segment.along[1], feature.segment.along[0]],
             },
             Some(circle) => {
                 let [first, last] = [from, to].map(|end| angle(minus(end, circle.centre)));
@@ -255,15 +257,15 @@ impl Normals {
     }
 
     /// Returns the fan of normals between two features that meet in a reflex corner; `None` if they do not.
-    fn fan(before: &Segment, after: &Segment) -> Option<Normals> {
-        let [arrives, leaves] = [before.tangent(1), after.tangent(0)];
+    fn fan(before: &Quarter, after: &Quarter) -> Option<Normals> {
+        let [arrives, leaves] = [before.segment.tangent(1), after.segment.tangent(0)];
         let turn = cross(arrives, leaves);
         if turn >= 0.0 && !(turn < CUSP_SINE && dot(arrives, leaves) < 0.0) {
             return None;
         }
         let [from, to] = [leaves, arrives].map(|tangent| angle([-tangent[1], tangent[0]]));
         Some(Normals::Arc {
-            centre: after.ends[0],
+            centre: after.segment.ends[0],
             from,
             turn: (to - from).rem_euclid(TAU),
             radius: 0.0,
@@ -273,16 +275,16 @@ impl Normals {
 
     /// Returns the fan of normals between a feature's normal at its end on the axis and the axis, if the feature
     /// meets its mirror image in a reflex corner there.
-    fn axis_fan(feature: &Segment, end: usize) -> Option<Normals> {
-        let [d, z] = feature.tangent(end);
-        if feature.ends[end][0] != 0.0 || z >= 0.0 {
+    fn axis_fan(feature: &Quarter, end: usize) -> Option<Normals> {
+        let [d, z] = feature.segment.tangent(end);
+        if feature.segment.ends[end][0] != 0.0 || z >= 0.0 {
             return None;
         }
         let normal = angle([-z, d]);
         // The direction into the tool: up at its beginning, down at its end.
         let axis = if end == 0 { FRAC_PI_2 } else { -FRAC_PI_2 };
         Some(Normals::Arc {
-            centre: feature.ends[end],
+            centre: feature.segment.ends[end],
             from: normal.min(axis),
             turn: (axis - normal).abs(),
             radius: 0.0,
@@ -373,17 +375,17 @@ fn angle(vector: MeridianPoint) -> f64 {
 }
 
 /// Returns the lines and circles that contain all points at the distance `t` from a feature.
-fn levels(feature: &Segment, t: f64) -> impl Iterator<Item = Level> {
-    let sides = match feature.circle {
+fn levels(feature: &Quarter, t: f64) -> impl Iterator<Item = Level> {
+    let sides = match feature.segment.circle {
         None => {
-            let normal = [-feature.along[1], feature.along[0]];
-            let at = dot(feature.ends[0], normal);
+            let normal = [-feature.segment.along[1], feature.segment.along[0]];
+            let at = dot(feature.segment.ends[0], normal);
             [-t, t].map(|t| Level::Line { normal, at: at + t })
         }
         Some(circle) => [circle.radius + t, (circle.radius - t).abs()]
             .map(|radius| Level::Circle { centre: circle.centre, radius }),
     };
-    let ends = feature.ends.map(|centre| Level::Circle { centre, radius: t });
+    let ends = feature.segment.ends.map(|centre| Level::Circle { centre, radius: t });
     sides.into_iter().chain(ends)
 }
 
@@ -450,8 +452,8 @@ mod tests {
     fn of(tool: &dyn Tool, limits: &[(&str, f64)]) -> Vec<CorePoint> {
         let info = tool.info();
         let section = Section::new(info, 1e-12).expect("a profile");
-        let limit = |feature: &Segment| {
-            let name = &*info.surfaces[feature.surface].name;
+        let limit = |feature: &Quarter| {
+            let name = &*info.surfaces[feature.segment.surface].name;
             limits
                 .iter()
                 .find(|(known, _)| *known == name)
@@ -461,7 +463,7 @@ mod tests {
         let found = witnesses(&section, &limits, 1e-9);
         for witness in &found {
             assert!(section.signed(witness.point) > limits[witness.feature], "{witness:?}");
-            let own = section.outline.features[witness.feature].distance(witness.point);
+            let own = section.outline.features[witness.feature].segment.distance(witness.point);
             assert!((own - section.signed(witness.point)).abs() < 1e-12, "{witness:?}");
         }
         found

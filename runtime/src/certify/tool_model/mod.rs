@@ -8,6 +8,7 @@ pub(crate) mod outline;
 pub(crate) mod owners;
 pub(crate) mod peaks;
 pub(crate) mod profile;
+pub(crate) mod quarter;
 pub(crate) mod rectangle;
 pub(crate) mod section;
 pub(crate) mod slab;
@@ -69,7 +70,7 @@ impl<'a> ToolModel<'a> {
     pub(crate) fn surface(&self, feature: usize) -> SurfaceId {
         match self {
             ToolModel::Profile(profile) => {
-                SurfaceId(profile.section.outline.features[feature].surface)
+                SurfaceId(profile.section.outline.features[feature].segment.surface)
             }
             ToolModel::Field(field) => field.info().regions[feature].surface,
         }

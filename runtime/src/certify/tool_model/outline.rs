@@ -2,14 +2,15 @@
 
 use crate::certify::rounding;
 use crate::certify::space::MeridianPoint;
+use crate::certify::tool_model::quarter::Quarter;
 use crate::tool::ToolInfo;
-use touchoff_plane::{Segment, dot, minus, norm};
+use touchoff_plane::{dot, minus, norm};
 
 /// The features of a profile, in its order.
 #[derive(Clone, Debug)]
 pub(crate) struct Outline {
-    pub(crate) features: Vec<Segment>,
-    /// The largest distance of a point of the profile from the tip.
+    pub(crate) features: Vec<Quarter>,
+    /// The largest distance of an end of a quarter from the tip.
     pub(crate) size: f64,
     /// The error bound of a point and its depth.
     pub(crate) error: f64,
@@ -18,9 +19,9 @@ pub(crate) struct Outline {
 impl Outline {
     /// Creates the outline of a tool; it is empty if the tool has no profile.
     pub(super) fn new(info: &ToolInfo, error: f64) -> Outline {
-        let features: Vec<Segment> =
-            info.outline.iter().flat_map(|segment| segment.geometry().quarters()).collect();
-        let size = features.iter().flat_map(|f| f.ends).map(norm).fold(0.0, f64::max);
+        let features: Vec<Quarter> =
+            info.outline.iter().flat_map(|segment| Quarter::of(segment.geometry())).collect();
+        let size = features.iter().flat_map(|f| f.segment.ends).map(norm).fold(0.0, f64::max);
         Outline { features, size, error }
     }
 
@@ -42,7 +43,7 @@ impl Outline {
         p: MeridianPoint,
     ) -> (f64, usize) {
         features.fold((f64::INFINITY, 0), |nearest, feature| {
-            let distance = self.features[feature].distance(p);
+            let distance = self.features[feature].segment.distance(p);
             if distance < nearest.0 { (distance, feature) } else { nearest }
         })
     }
@@ -50,7 +51,7 @@ impl Outline {
     /// Returns whether neighbouring features are nearer than `feature` to all points of a polygon. That is so if the
     /// nearest point of `feature` is an end that it shares with a neighbour, and the neighbour comes nearer from there.
     pub(crate) fn hidden_by_neighbours(&self, feature: usize, corners: &[MeridianPoint]) -> bool {
-        let Some(ends) = self.features[feature].at_ends(corners) else { return false };
+        let Some(ends) = self.features[feature].nearest_ends(corners) else { return false };
         [0, 1].into_iter().all(|end| !ends[end] || self.neighbour_is_nearer(feature, end, corners))
     }
 
@@ -61,9 +62,9 @@ impl Outline {
             return false;
         };
         // The direction in which the neighbour leaves the shared end.
-        let tangent = other.tangent(1 - end);
+        let tangent = other.segment.tangent(1 - end);
         let outward = if end == 0 { tangent.map(|part| -part) } else { tangent };
-        let from = self.features[feature].ends[end];
+        let from = self.features[feature].segment.ends[end];
         corners.iter().all(|p| dot(outward, minus(*p, from)) > 0.0)
     }
 }

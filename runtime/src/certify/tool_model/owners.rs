@@ -5,13 +5,13 @@ use crate::certify::space::MeridianPoint;
 use crate::certify::tool_model::cells::Cell;
 use crate::certify::tool_model::outline::Outline;
 use crate::certify::tool_model::peaks::Peaks;
+use crate::certify::tool_model::quarter::{Quarter, mean};
 use crate::certify::tool_model::rectangle::Rectangle;
 use crate::certify::tool_model::section::Section;
 use crate::certify::tool_model::slab::SectionSlab;
 use crate::tool::{Region, ToolInfo, bit};
 use std::cell::LazyCell;
 use std::collections::BinaryHeap;
-use touchoff_plane::{Segment, mean};
 
 /// The features to which a query is restricted, by their indices in the section's list. A feature *owns* the points to
 /// which it is the nearest. For a tool known by its depth field the features are its regions.
@@ -50,7 +50,7 @@ impl Owners {
     /// Returns the features of some surfaces.
     pub(crate) fn of(section: &Section, surfaces: impl Fn(usize) -> bool) -> Owners {
         let owned_features: Vec<bool> =
-            section.outline.features.iter().map(|f| surfaces(f.surface)).collect();
+            section.outline.features.iter().map(|f| surfaces(f.segment.surface)).collect();
         let owned_features = owned_features.contains(&false).then_some(owned_features);
         let mut owners = Owners { owned_features, ..Owners::default() };
         if !owners.all() {
@@ -68,10 +68,10 @@ impl Owners {
     /// ends.
     pub(crate) fn near(section: &Section, surfaces: impl Fn(usize) -> bool) -> Owners {
         let owned_features: Vec<bool> =
-            section.outline.features.iter().map(|f| surfaces(f.surface)).collect();
+            section.outline.features.iter().map(|f| surfaces(f.segment.surface)).collect();
         let owned =
             section.outline.features.iter().zip(&owned_features).filter(|(_, owned)| **owned);
-        let peaks = owned.flat_map(|(feature, _)| feature.ends.map(|end| end[1])).collect();
+        let peaks = owned.flat_map(|(feature, _)| feature.segment.ends.map(|end| end[1])).collect();
         Owners { owned_features: Some(owned_features), peaks, ..Owners::default() }
     }
 
@@ -214,12 +214,12 @@ impl Owners {
     ) -> bool {
         !self.all()
             && self.own_nothing(outline, rectangle, outline.owner_margin(), |owner| {
-                outline.features[owner].distance(p) > depth + 2.0 * displacement
+                outline.features[owner].segment.distance(p) > depth + 2.0 * displacement
             })
     }
 
     /// Returns whether all owners are farther away than the distance up to which a point outside counts as touching.
-    pub(super) fn are_apart(&self, outline: &Outline, distance: impl Fn(&Segment) -> f64) -> bool {
+    pub(super) fn are_apart(&self, outline: &Outline, distance: impl Fn(&Quarter) -> f64) -> bool {
         !self.all()
             && self
                 .owned(outline)
@@ -323,11 +323,15 @@ mod tests {
                             slab.low + fraction(0.754_877_666_2) * (slab.high - slab.low),
                         ];
                         // The nearest feature by the distances of all, which the zones are not computed from.
-                        let distances =
-                            section.outline.features.iter().map(|feature| feature.distance(p));
+                        let distances = section
+                            .outline
+                            .features
+                            .iter()
+                            .map(|feature| feature.segment.distance(p));
                         let nearest = distances.clone().fold(f64::INFINITY, f64::min);
                         let mut nearby = section.outline.features.iter().zip(distances);
-                        let owns = nearby.any(|(f, d)| d == nearest && f.surface == surface);
+                        let owns =
+                            nearby.any(|(f, d)| d == nearest && f.segment.surface == surface);
                         if !owns || !section.contains(p) || nearest <= deeper {
                             continue;
                         }

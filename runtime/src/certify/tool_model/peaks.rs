@@ -16,10 +16,11 @@ use crate::certify::rounding;
 use crate::certify::space::MeridianPoint;
 use crate::certify::tool_model::cells::Cell;
 use crate::certify::tool_model::owners::Owners;
+use crate::certify::tool_model::quarter::Quarter;
 use crate::certify::tool_model::rectangle::Rectangle;
 use crate::certify::tool_model::section::Section;
 use touchoff_plane::Circle;
-use touchoff_plane::{Segment, minus, norm};
+use touchoff_plane::{minus, norm};
 
 /// The heights at which depth can have a local maximum, and rectangles in which there may be more of them.
 #[derive(Clone, Debug, Default)]
@@ -43,7 +44,7 @@ impl Owners {
     pub(super) fn find_peaks(&self, section: &Section, others: bool) -> Peaks {
         let min_size = rounding::PEAK_CELL * section.outline.error;
         // All points of an arc are equally far from its centre.
-        let centres = section.outline.features.iter().filter_map(|feature| feature.circle);
+        let centres = section.outline.features.iter().filter_map(|feature| feature.segment.circle);
         let mut peaks: Vec<f64> = centres.map(|circle| circle.centre[1]).collect();
         peaks.extend(section.border_ends());
         let mut cells: Vec<Cell> =
@@ -84,15 +85,17 @@ impl Owners {
         let feature = |index: usize| &section.outline.features[index];
         let mut sites: Vec<usize> = Vec::new();
         for index in &cell.candidates {
-            let foot = feature(*index).foot(middle);
+            let foot = feature(*index).segment.foot(middle);
             let is_known = sites.iter().any(|site| {
                 // Both sides of a reflex corner are equally far from a point nearest to that corner. Elsewhere one of
                 // two adjacent features is nearer on either side of a line. Shared ends are identical to the bit.
                 let same_foot =
-                    norm(minus(feature(*site).foot(middle), foot)) <= section.outline.error;
+                    norm(minus(feature(*site).segment.foot(middle), foot)) <= section.outline.error;
                 let same_kind = self.is_owned(*index) == self.is_owned(*site);
-                let both_end =
-                    || [*index, *site].map(|f| feature(f).at_ends(&corners).is_some()) == [true; 2];
+                let both_end = || {
+                    [*index, *site].map(|f| feature(f).nearest_ends(&corners).is_some())
+                        == [true; 2]
+                };
                 let is_in_line = || {
                     let (first, second) = (index.min(site), index.max(site));
                     reach >= rounding::MERGED_CELL * section.outline.error
@@ -154,7 +157,7 @@ impl Section {
                 let is_other_nearer = |t: f64| {
                     let p = border.point(course, t);
                     self.outline.nearest(others(), p).0
-                        <= pair[0].distance(p).min(pair[1].distance(p))
+                        <= pair[0].segment.distance(p).min(pair[1].segment.distance(p))
                 };
                 let (from, away) = (border.from[0], border.max_away(course));
                 let to_axis = if away < 0.0 { from / -away } else { f64::INFINITY };
@@ -179,7 +182,7 @@ impl Section {
 
 /// The border between two features that meet, from the point where they do.
 struct Border<'f> {
-    features: [&'f Segment; 2],
+    features: [&'f Quarter; 2],
     from: MeridianPoint,
     /// The unit normals of both at that point, into the tool.
     normals: [MeridianPoint; 2],
@@ -197,18 +200,19 @@ enum Course {
 }
 
 impl Border<'_> {
-    fn new<'f>(section: &Section, first: &'f Segment, second: &'f Segment) -> Border<'f> {
-        let normals = [first.tangent(1), second.tangent(0)].map(|[d, z]| {
+    fn new<'f>(section: &Section, first: &'f Quarter, second: &'f Quarter) -> Border<'f> {
+        let normals = [first.segment.tangent(1), second.segment.tangent(0)].map(|[d, z]| {
             let length = d.hypot(z);
             [-z / length, d / length]
         });
         // Beside an arc that bulges the border ends at its centre at the latest, beside another one anywhere.
         let reach =
             |circle: Circle| if circle.convex { circle.radius } else { 2.0 * section.outline.size };
-        let reaches = [first, second].into_iter().filter_map(|feature| feature.circle.map(reach));
+        let reaches =
+            [first, second].into_iter().filter_map(|feature| feature.segment.circle.map(reach));
         let stray = norm(minus(normals[0], normals[1])) * reaches.fold(0.0, f64::max);
         let is_curved = stray > rounding::FRACTION * section.outline.error;
-        Border { features: [first, second], from: second.ends[0], normals, is_curved }
+        Border { features: [first, second], from: second.segment.ends[0], normals, is_curved }
     }
 
     /// Returns whether a course is no line.
@@ -246,7 +250,7 @@ impl Border<'_> {
         // Beside an arc the border is no line. On the normal of either feature the other one is nearer.
         let is_first_nearer = |part: f64| {
             let p = at(self.mix(part));
-            self.features[0].distance(p) <= self.features[1].distance(p)
+            self.features[0].segment.distance(p) <= self.features[1].segment.distance(p)
         };
         at(self.mix(bisect([0.0, 1.0], is_first_nearer)))
     }
@@ -265,15 +269,16 @@ fn bisect([mut low, mut high]: [f64; 2], holds: impl Fn(f64) -> bool) -> f64 {
 
 /// Returns pairs of points of features, or of the lines and circles that they lie on, that have a common normal. An end
 /// of a feature counts as having every normal.
-fn normal_pairs(features: &[Segment]) -> Vec<[MeridianPoint; 2]> {
+fn normal_pairs(features: &[Quarter]) -> Vec<[MeridianPoint; 2]> {
     let mut pairs = Vec::new();
-    let ends: Vec<MeridianPoint> = features.iter().flat_map(|feature| feature.ends).collect();
+    let ends: Vec<MeridianPoint> =
+        features.iter().flat_map(|feature| feature.segment.ends).collect();
     for (index, feature) in features.iter().enumerate() {
         for end in &ends {
             pairs.extend(normals(feature, *end).map(|point| [*end, point]));
         }
         for other in &features[..index] {
-            match (&feature.circle, &other.circle) {
+            match (&feature.segment.circle, &other.segment.circle) {
                 // Parallel lines have common normals everywhere; those at their ends suffice.
                 (None, None) => {}
                 (Some(circle), None) => pairs.extend(common(other, circle)),
@@ -294,9 +299,9 @@ fn normal_pairs(features: &[Segment]) -> Vec<[MeridianPoint; 2]> {
 }
 
 /// Returns the points of a feature's line or circle whose normal passes through a point.
-fn normals(feature: &Segment, p: MeridianPoint) -> impl Iterator<Item = MeridianPoint> + use<> {
-    let points = match &feature.circle {
-        None => [Some(feature.line_point(feature.position(p))), None],
+fn normals(feature: &Quarter, p: MeridianPoint) -> impl Iterator<Item = MeridianPoint> + use<> {
+    let points = match &feature.segment.circle {
+        None => [Some(feature.segment.line_point(feature.segment.position(p))), None],
         Some(Circle { centre, radius, .. }) => {
             let offset = minus(p, *centre);
             let distance = norm(offset);
@@ -310,9 +315,9 @@ fn normals(feature: &Segment, p: MeridianPoint) -> impl Iterator<Item = Meridian
 }
 
 /// Returns the pairs of points of a line and a circle on their common normal.
-fn common(line: &Segment, circle: &Circle) -> [[MeridianPoint; 2]; 2] {
+fn common(line: &Quarter, circle: &Circle) -> [[MeridianPoint; 2]; 2] {
     let Circle { centre, radius, .. } = *circle;
-    let foot = line.line_point(line.position(centre));
-    let normal = [-line.along[1], line.along[0]];
+    let foot = line.segment.line_point(line.segment.position(centre));
+    let normal = [-line.segment.along[1], line.segment.along[0]];
     [radius, -radius].map(|radius| [foot, [0, 1].map(|k| centre[k] + radius * normal[k])])
 }

@@ -6,9 +6,10 @@ use crate::certify::space::MeridianPoint;
 use crate::certify::tool_model::cells::CellTree;
 use crate::certify::tool_model::outline::Outline;
 use crate::certify::tool_model::owners::Owners;
+use crate::certify::tool_model::quarter::{Triangle, mean};
 use crate::certify::tool_model::slab::SectionSlab;
 use crate::tool::ToolInfo;
-use touchoff_plane::{Triangle, cross, mean, minus, norm};
+use touchoff_plane::{cross, minus, norm};
 
 /// The sine of a reflex corner's turn up to which it is left out. A corner only lowers bounds, so that no result is wrong. No point
 /// is nearer to such a corner than to the lines that meet there by more than 5e-19 of its distance.
@@ -65,13 +66,13 @@ impl Section {
         [low, high]: [f64; 2],
     ) -> impl Iterator<Item = ReflexCorner> {
         self.outline.features.windows(2).filter_map(move |pair| {
-            let turn = cross(pair[0].tangent(1), pair[1].tangent(0));
-            let point = pair[1].ends[0];
+            let turn = cross(pair[0].segment.tangent(1), pair[1].segment.tangent(0));
+            let point = pair[1].segment.ends[0];
             (turn < -MIN_REFLEX_TURN && low <= point[1] && point[1] <= high).then(|| ReflexCorner {
                 point,
                 // Where the profile overhangs, the tool may be on either side of a level feature.
                 ends_level: !self.overhangs
-                    && pair.iter().any(|f| f.circle.is_none() && f.along[1] == 0.0),
+                    && pair.iter().any(|f| f.segment.circle.is_none() && f.segment.along[1] == 0.0),
             })
         })
     }
@@ -109,7 +110,7 @@ impl Section {
     /// Returns the outward unit normal at the foot of a point on a feature: for a point outside, the direction from its foot.
     pub(crate) fn normal(&self, feature: usize, p: MeridianPoint) -> MeridianPoint {
         let feature = &self.outline.features[feature];
-        let away = minus(p, feature.foot(p));
+        let away = minus(p, feature.segment.foot(p));
         let length = norm(away);
         // Rounding decides on which side of the surface a point so near to it is.
         if length <= self.outline.contact_tolerance() {
@@ -162,7 +163,7 @@ impl Section {
         let (over, side) = self.inner_distance(slab, p);
         if over < 0.0 {
             let other = -over <= self.outline.contact_tolerance()
-                && owners.are_apart(&self.outline, |f| f.distance(p));
+                && owners.are_apart(&self.outline, |f| f.segment.distance(p));
             let value = if other { f64::NEG_INFINITY } else { over };
             return Depth {
                 value,
@@ -171,7 +172,7 @@ impl Section {
             };
         }
         // The side of the slab is the first, so that it owns points of the slab that another feature is as near to.
-        let side_distance = (self.side(slab).distance(p), slab.side);
+        let side_distance = (self.side(slab).segment.distance(p), slab.side);
         let (mut value, mut feature) = self.nearest_of_all(p);
         if side_distance.0 <= value {
             (value, feature) = side_distance;
@@ -261,7 +262,7 @@ impl Section {
         for owner in owners.owned(&self.outline) {
             let feature = &self.outline.features[owner];
             // A distance has the Lipschitz constant 1.
-            let coarse = reach - feature.distance(middle);
+            let coarse = reach - feature.segment.distance(middle);
             let near = coarse > best.max(bound);
             bound = bound.max(if near { -feature.min_distance(triangle).max(0.0) } else { coarse });
         }

@@ -2,6 +2,7 @@
 //! another feature, its *inner* side, where the profile overhangs. No feature ends between a slab's heights.
 
 use crate::certify::tool_model::outline::Outline;
+use crate::certify::tool_model::quarter::Quarter;
 use crate::certify::tool_model::rectangle::Rectangle;
 use crate::certify::tool_model::section::Section;
 use touchoff_plane::Segment;
@@ -41,7 +42,7 @@ impl Outline {
         // Less than `error`, by which slabs are taken to reach farther: that is 64 ε of a length no smaller than `size`.
         let level = 4.0 * f64::EPSILON * self.size;
         let mut heights: Vec<f64> =
-            features.iter().flat_map(|f| f.ends).map(|end| end[1]).collect();
+            features.iter().flat_map(|f| f.segment.ends).map(|end| end[1]).collect();
         heights.sort_by(f64::total_cmp);
         heights.dedup_by(|upper, lower| *upper - *lower <= level);
         let mut slabs = Vec::new();
@@ -49,7 +50,7 @@ impl Outline {
             let (low, high) = (pair[0], pair[1]);
             let middle = f64::midpoint(low, high);
             let passing = features.iter().enumerate().filter(|(_, feature)| {
-                let [from, to] = feature.ends.map(|end| end[1]);
+                let [from, to] = feature.segment.ends.map(|end| end[1]);
                 (to - from).abs() > level && from.min(to) < middle && middle < from.max(to)
             });
             let mut sides: Vec<usize> = passing.map(|(index, _)| index).collect();
@@ -59,7 +60,7 @@ impl Outline {
             // The tool is on the left of its profile: a feature that runs up ends it, one that runs down begins it.
             let mut inner = None;
             for side in sides {
-                let [from, to] = features[side].ends.map(|end| end[1]);
+                let [from, to] = features[side].segment.ends.map(|end| end[1]);
                 if from < to {
                     slabs.push(SectionSlab::new(features, [low, high], side, inner.take()));
                 } else {
@@ -68,7 +69,7 @@ impl Outline {
             }
         }
         let feet: Vec<[f64; 2]> = (0..slabs.len())
-            .map(|index| self.feet(&features[slabs[index].side], &slabs, index))
+            .map(|index| self.feet(&features[slabs[index].side].segment, &slabs, index))
             .collect();
         slabs.iter_mut().zip(feet).for_each(|(slab, feet)| slab.feet = feet);
         slabs
@@ -94,7 +95,7 @@ impl Outline {
     /// Returns whether a line stays outside the tool between a slab's heights.
     fn is_outside(&self, line: &Segment, slab: &SectionSlab) -> bool {
         let [low, high] = [slab.low, slab.high].map(|z| line.line_radius_at(z));
-        match self.features[slab.side].circle {
+        match self.features[slab.side].segment.circle {
             None => low >= slab.radii[0] && high >= slab.radii[1],
             // An arc may bulge between its ends, so the line has to clear the slab's largest radius.
             Some(_) => low.min(high) >= slab.radius,
@@ -104,7 +105,7 @@ impl Outline {
 
 impl SectionSlab {
     fn new(
-        features: &[Segment],
+        features: &[Quarter],
         [low, high]: [f64; 2],
         side: usize,
         inner: Option<usize>,
@@ -116,7 +117,7 @@ impl SectionSlab {
             features[inner].radius_at(low).min(features[inner].radius_at(high))
         });
         // Feet on the side itself are on the surface. How far they may be beyond it depends on the other slabs.
-        let feet = [0.0, features[side].chord];
+        let feet = [0.0, features[side].segment.chord];
         SectionSlab { low, high, side, inner, hole, radii, radius, feet }
     }
 }
@@ -129,14 +130,14 @@ impl Section {
     }
 
     /// Returns the feature that is the outer side of a slab.
-    pub(crate) fn side(&self, slab: &SectionSlab) -> &Segment {
+    pub(crate) fn side(&self, slab: &SectionSlab) -> &Quarter {
         &self.outline.features[slab.side]
     }
 
     /// Returns the range along a line of the profile, other than a level one, in which its feet are on the surface or outside
     /// the tool.
     pub(crate) fn outside_feet(&self, index: usize) -> [f64; 2] {
-        let line = &self.outline.features[index];
+        let line = &self.outline.features[index].segment;
         match self.slabs.iter().position(|slab| slab.side == index) {
             Some(slab) => self.feet(line, slab),
             None => [0.0, line.chord],
@@ -158,7 +159,7 @@ impl Section {
     pub(crate) fn lines_beside(&self, slab: &SectionSlab) -> impl Iterator<Item = usize> {
         let [low, high] = [slab.low, slab.high];
         // An arc may bulge beyond the line between its ends.
-        let is_line = self.side(slab).circle.is_none();
+        let is_line = self.side(slab).segment.circle.is_none();
         let radii = if is_line { slab.radii } else { [slab.radius; 2] };
         let corners = [[slab.hole, low], [slab.hole, high], [radii[0], low], [radii[1], high]];
         let cells = self.cells_of(slab);
@@ -173,12 +174,12 @@ impl Section {
         others.dedup();
         others.into_iter().skip_while(|other| *other == slab.side).filter(move |other| {
             let line = &self.outline.features[*other];
-            let positions = corners.map(|corner| line.position(corner));
-            line.circle.is_none()
-                && line.along[1] > 0.0
+            let positions = corners.map(|corner| line.segment.position(corner));
+            line.segment.circle.is_none()
+                && line.segment.along[1] > 0.0
                 && corners.iter().all(|corner| line.continued_distance(*corner) >= 0.0)
                 && positions.iter().any(|at| *at > 0.0)
-                && positions.iter().any(|at| *at < line.chord)
+                && positions.iter().any(|at| *at < line.segment.chord)
         })
     }
 }

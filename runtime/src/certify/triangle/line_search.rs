@@ -7,8 +7,9 @@
 
 use crate::certify::space::MeridianPoint;
 use crate::certify::tool_model::owners::Owners;
+use crate::certify::tool_model::quarter::Triangle;
 use crate::certify::tool_model::section::{Depth, Section};
-use touchoff_plane::{Triangle, dot};
+use touchoff_plane::dot;
 
 /// The least part of an interval that a cut where two bounds meet leaves: one nearer to an end would leave almost the whole interval
 /// to be bounded again.
