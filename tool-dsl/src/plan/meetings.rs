@@ -21,11 +21,7 @@ const BOX_FRACTION: f64 = 1e-3;
 /// The distance from the middle of a box up to which a meeting is the box's, in diagonals.
 const NEAR_BOX: f64 = 2.0;
 /// The side of the squares, in tolerances, of whose meetings one stands for all.
-const SAME_MEETING: f64 = 0.125;
-/// The length of the last step of Newton's method, in tolerances. Where curves touch, the point is as far away as that.
-const LAST_STEP: f64 = 0.01;
-/// The length of a step, in tolerances, that rounding may make of none.
-const ROUNDED_STEP: f64 = 100.0;
+const SAME_MEETING: f64 = 0.03125;
 /// The number of steps of Newton's method. Where curves touch, each halves the distance.
 const MAX_STEPS: usize = 60;
 
@@ -131,8 +127,9 @@ impl Cells<'_> {
 
     /// Returns a point where two curves meet, by Newton's method from a point near it.
     fn meeting(&self, curves: [CurveIndex; 2], mut p: Point) -> Option<Point> {
-        let mut last_step = f64::INFINITY;
-        for _ in 0..MAX_STEPS {
+        // From anywhere the first step leads to where two lines meet, and the second mends its rounding.
+        let are_lines = curves.into_iter().all(|curve| self.shapes[curve].is_line());
+        for _ in 0..if are_lines { 2 } else { MAX_STEPS } {
             let [(one, [a, b]), (other, [c, d])] =
                 curves.map(|curve| self.shapes[curve].value_and_gradient(p));
             let determinant = a * d - b * c;
@@ -141,13 +138,9 @@ impl Cells<'_> {
                 break;
             }
             p = minus(p, step);
-            let length = norm(step);
-            // Between nearly parallel curves rounding moves the point farther than that, again and again.
-            let is_rounding = length >= last_step && length <= ROUNDED_STEP * self.tolerance;
-            if length <= LAST_STEP * self.tolerance || is_rounding {
+            if norm(step) <= f64::EPSILON * self.tolerance {
                 break;
             }
-            last_step = length;
         }
         // Rounding may lead beyond the axis.
         if p[0] < 0.0 && p[0] >= -self.tolerance {

@@ -28,7 +28,7 @@ const MIN_CUT_FRACTION: f64 = 1e-3;
 /// The number of polygons of a feature that are halved.
 const MAX_HALVINGS: usize = 300;
 /// The part of a distance by which another feature may be nearer at a vertex of a polygon that is not halved.
-const LOOSE_FRACTION: f64 = 0.03;
+const LOOSE_FRACTION: f64 = 0.08;
 /// The least area that is halved, relative to the square of the section's size.
 const MIN_AREA: f64 = 1e-20;
 

@@ -82,10 +82,14 @@ struct Nearness {
 
 /// The distance, in sizes, within which the polygons of neighbours touch.
 const TOUCHING_FRACTION: f64 = 1e-9;
-/// The difference of distances, in sizes, up to which a border is left out.
-const LEFT_OUT_FRACTION: f64 = 4e-12;
-/// The extent, in sizes, up to which a border is left out.
+/// The least number of features whose borders meet in one point. Fewer have few borders, all of which are asked.
+const CROWD: usize = 40;
+/// The difference of distances, in sizes, of features whose borders meet.
+const CROWD_FRACTION: f64 = 1e-8;
+/// The extent of a contact, in sizes, up to which a border is left out there.
 const MAX_LEFT_OUT_FRACTION: f64 = 4e-9;
+/// The difference of distances, in sizes, on the way across it.
+const LEFT_OUT_FRACTION: f64 = 4e-12;
 /// The distance from the outline's bounding box up to which the outside is sampled, in sizes.
 const SAMPLED_FRACTION: f64 = 0.25;
 /// The area that is sampled as one, relative to the square of the section's size.
@@ -171,21 +175,15 @@ impl Partition {
     }
 
     /// Returns pairs of features between whose cells a border matters, the first listed first: their polygons touch, and not
-    /// only where all borders of many features meet.
+    /// only where the borders of many features meet.
     fn neighbours(&self, section: &Section<'_>) -> Vec<[usize; 2]> {
+        let distance = TOUCHING_FRACTION * section.size;
         let mut neighbours = Vec::new();
         for (a, cover) in self.covers.iter().enumerate() {
             for (b, other) in self.covers[..a].iter().enumerate() {
-                let contact = section.contact(a, b);
                 let pairs = cover.iter().flat_map(|p| other.iter().map(move |q| (p, q)));
-                let mut touching = pairs.filter(|(p, q)| do_touch(p, q, contact.distance));
-                let are_neighbours = if contact.least_extent == 0.0 {
-                    touching.next().is_some()
-                } else {
-                    let common = touching.filter_map(|(p, q)| near_part(p, q, contact.distance));
-                    extent(&common.flatten().collect()) > contact.least_extent
-                };
-                if are_neighbours {
+                let touching: Vec<_> = pairs.filter(|(p, q)| do_touch(p, q, distance)).collect();
+                if !touching.is_empty() && !section.meet_in_a_crowd([a, b], &touching) {
                     neighbours.push([b, a]);
                 }
             }
@@ -239,33 +237,33 @@ impl Partition {
     }
 }
 
-/// When the polygons of two features have a border in common that matters.
-struct Contact {
-    /// The distance within which they touch.
-    distance: f64,
-    /// The extent of their contact up to which the border is left out.
-    least_extent: f64,
-}
-
 impl Section<'_> {
-    /// Returns when the polygons of two features have a border that matters. The difference of distances from two lines changes
-    /// at most at one rate everywhere. Polygons err by rounding of distances, divided by that rate. Where many borders meet in
-    /// one point but for rounding, as those of a ball drawn as chords do in its centre, two polygons touch only about it: of points
-    /// as near as that to a border, it does not matter which of the two has them, and all others are told apart by their other
-    /// neighbours' borders. Segments that share an end always have one, however short.
-    fn contact(&self, a: usize, b: usize) -> Contact {
-        let distance = TOUCHING_FRACTION * self.size;
+    /// Returns whether polygons of two features touch only where the borders of many meet in one point but for rounding, as those of a
+    /// ball drawn as chords do in its centre: of points so near to a border, it does not matter which of the two has them, and all
+    /// others are told apart by the borders with other neighbours. The difference of distances from two lines changes at most at
+    /// one rate everywhere, and polygons err by the rounding of distances, divided by that rate.
+    fn meet_in_a_crowd(&self, [a, b]: [usize; 2], touching: &[(&Polygon, &Polygon)]) -> bool {
         let [Some(one), Some(other)] = [a, b].map(|feature| self.line_direction(feature)) else {
-            return Contact { distance, least_extent: 0.0 };
+            return false;
         };
         let rate = norm(minus(one, other));
-        let share_an_end = self.end_points(a).iter().any(|end| self.end_points(b).contains(end));
-        let least_extent = if share_an_end {
-            0.0
-        } else {
-            self.size * MAX_LEFT_OUT_FRACTION.min(LEFT_OUT_FRACTION / rate)
+        let near_parts = |distance: f64| -> Polygon {
+            let parts = touching.iter().filter_map(|(p, q)| near_part(p, q, distance));
+            parts.flatten().collect()
         };
-        Contact { distance: distance.min(TIE_TOLERANCES * self.tolerance() / rate), least_extent }
+        let contact = near_parts(TIE_TOLERANCES * self.tolerance() / rate);
+        if extent(&contact) > self.size * MAX_LEFT_OUT_FRACTION.min(LEFT_OUT_FRACTION / rate) {
+            return false;
+        }
+        let loose = near_parts(TOUCHING_FRACTION * self.size);
+        if loose.is_empty() {
+            return false;
+        }
+        let at = centroid(&loose);
+        let distances = (0..self.features.len()).map(|feature| self.distance_of(feature, at));
+        let own = self.distance_of(a, at);
+        let is_as_near = |distance: &f64| (distance - own).abs() <= CROWD_FRACTION * self.size;
+        distances.filter(is_as_near).count() >= CROWD
     }
 
     /// Returns a point with the nearest feature as its owner, or the outside; `None` if rounding decides about that.
