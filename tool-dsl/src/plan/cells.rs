@@ -7,7 +7,7 @@ use super::samples::Sample;
 use crate::diagnostic::{CheckKind, Diagnostic};
 use crate::formula::{CurveIndex, NEGATIVE, POSITIVE};
 use crate::geometry::function::CurveFunction;
-use crate::geometry::outline::{self, Point, minus, norm};
+use crate::geometry::outline::{self, Point};
 use crate::geometry::polygon::{Polygon, centroid, width};
 use crate::model::{Model, Profile};
 use crate::regionalise;
@@ -283,9 +283,8 @@ impl<'m> Cells<'m> {
         let [low, high] = outline::bounding_box(&self.profile.outline).map(|end| end[1]);
         let mut points = ring_points(low / 2.0 + high / 2.0, self.size);
         for segment in &self.profile.outline {
-            let [from, to] = segment.geometry.ends;
-            let along = minus(to, from).map(|part| part / norm(minus(to, from)));
-            for end in [from, to] {
+            let along = segment.geometry.along;
+            for end in segment.geometry.ends {
                 points.extend(strip_points(end, along, self.size));
                 points.extend(strip_points(end, [-along[1], along[0]], self.size));
             }

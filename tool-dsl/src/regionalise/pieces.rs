@@ -243,6 +243,9 @@ impl Section<'_> {
     /// others are told apart by the borders with other neighbours. The difference of distances from two lines changes at most at
     /// one rate everywhere, and polygons err by the rounding of distances, divided by that rate.
     fn meet_in_a_crowd(&self, [a, b]: [usize; 2], touching: &[(&Polygon, &Polygon)]) -> bool {
+        if self.features.len() < CROWD {
+            return false;
+        }
         let [Some(one), Some(other)] = [a, b].map(|feature| self.line_direction(feature)) else {
             return false;
         };
